@@ -1,0 +1,392 @@
+//! The global system of a model: mass, forces and tangent, and the linear equations for its free coordinates.
+
+mod follower;
+mod numbering;
+mod scatter;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use nalgebra::Vector3;
+
+use crate::element::{ElementBlock, Outcome, Want};
+use crate::linear::{Factorization, Inertia, LinearError, Pattern, SymmetricMatrix};
+use crate::mesh::Place;
+use crate::model::{BodyId, History, LoadKind, Model};
+use crate::quadrature::Rule;
+use crate::strain::packed;
+
+use follower::Follower;
+use numbering::Numbering;
+use scatter::Scatter;
+
+/// Time spent in the parts of a solve.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Timers {
+    /// Making the system: numbering, patterns, tables.
+    pub setup: Duration,
+    /// Forces and tangents.
+    pub assembly: Duration,
+    /// Numeric factorisations.
+    pub factorization: Duration,
+    /// Solutions with a factorisation.
+    pub solve: Duration,
+}
+
+/// Strain energy, J.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StrainEnergy {
+    /// From membrane strain.
+    pub membrane: f64,
+    /// From curvature.
+    pub bending: f64,
+}
+
+impl StrainEnergy {
+    /// Both parts together.
+    pub fn total(&self) -> f64 {
+        self.membrane + self.bending
+    }
+}
+
+/// A load that does not depend on the state.
+struct Dead {
+    history: History,
+    force: Vec<f64>,
+}
+
+/// The equations of a model, with everything that stays while the state changes made once.
+///
+/// Vectors over all nodal coordinates have the length of [`Model::reference`]; linear equations are solved for the
+/// free ones, fixed coordinates leave before anything is factorised.
+pub struct System {
+    model: Arc<Model>,
+    numbering: Numbering,
+    blocks: Vec<Box<dyn ElementBlock>>,
+    scatter: Scatter,
+    mass: SymmetricMatrix,
+    weight: Vec<f64>,
+    dead: Vec<Dead>,
+    followers: Vec<Follower>,
+    outcomes: Vec<Outcome>,
+    values: Vec<f64>,
+    factorization: Factorization,
+    free: Vec<f64>,
+    factorizations: usize,
+    timers: Timers,
+}
+
+impl System {
+    /// Makes the system of a model.
+    ///
+    /// # Errors
+    ///
+    /// Only if the memory does not suffice.
+    pub fn new(model: Arc<Model>) -> Result<Self, LinearError> {
+        let start = Instant::now();
+        let numbering = Numbering::new(&model)?;
+        let blocks: Vec<_> = model.bodies().iter().map(|body| body.elements(model.reference())).collect();
+        let scatter = Scatter::new(&numbering)?;
+        let (mass, weight) = mass_matrix(&model, &blocks)?;
+        let factorization = Factorization::new(Arc::clone(scatter.pattern()))?;
+        let mut system = Self {
+            values: vec![0.0; scatter.pattern().nnz()],
+            free: vec![0.0; numbering.coordinate.len()],
+            outcomes: vec![Outcome::default(); blocks.len()],
+            dead: Vec::new(),
+            followers: Vec::new(),
+            factorizations: 0,
+            timers: Timers::default(),
+            model,
+            numbering,
+            blocks,
+            scatter,
+            mass,
+            weight,
+            factorization,
+        };
+        system.add_loads();
+        system.timers.setup = start.elapsed();
+        Ok(system)
+    }
+
+    fn add_loads(&mut self) {
+        let model = Arc::clone(&self.model);
+        for load in model.loads() {
+            let history = load.history.clone();
+            let mut force = vec![0.0; model.reference().len()];
+            match load.kind {
+                LoadKind::Gravity(acceleration) => {
+                    for (target, weight) in force.chunks_mut(3).zip(&self.weight) {
+                        for (sum, a) in target.iter_mut().zip(acceleration) {
+                            *sum = weight * a;
+                        }
+                    }
+                }
+                LoadKind::Force { body, point, force: f } => {
+                    let grid = model.body(body).grid();
+                    let (element, at) = grid.locate(point).expect("checked when the load was added");
+                    self.add_at(body.index(), element, at, f, &mut force);
+                }
+                LoadKind::Line { body, edge, per_length } => {
+                    let grid = model.body(body).grid();
+                    let block = body.index();
+                    for element in grid.elements_at(edge) {
+                        for (s, weight) in Rule::Gauss(4).points() {
+                            let constant = f64::from(edge.end == crate::mesh::End::High);
+                            let at = if edge.across == 0 { [constant, s] } else { [s, constant] };
+                            let orders = if edge.across == 0 { [0, 1] } else { [1, 0] };
+                            let along = self.interpolate(block, element, orders, at, model.reference());
+                            let length = weight * grid.element_sides()[1 - edge.across] * along.norm();
+                            self.add_at(block, element, at, per_length.map(|f| f * length), &mut force);
+                        }
+                    }
+                }
+                LoadKind::Moment { body, edge, per_length } => {
+                    let block = body.index();
+                    let grid = model.body(body).grid();
+                    let follower =
+                        Follower::moment(block, self.blocks[block].as_ref(), grid, edge, per_length, history);
+                    self.followers.push(follower);
+                    continue;
+                }
+                LoadKind::Pressure { body, pressure } => {
+                    let block = body.index();
+                    let grid = model.body(body).grid();
+                    self.followers.push(Follower::pressure(
+                        block,
+                        self.blocks[block].as_ref(),
+                        grid,
+                        pressure,
+                        history,
+                    ));
+                    continue;
+                }
+            }
+            self.dead.push(Dead { history, force });
+        }
+    }
+
+    /// Adds a force at a point of an element.
+    fn add_at(&self, block: usize, element: usize, at: [f64; 2], value: [f64; 3], force: &mut [f64]) {
+        let shape = self.blocks[block].derivative([0, 0], at);
+        for (vector, shape) in self.blocks[block].vectors(element).iter().zip(shape) {
+            for (sum, f) in force[3 * *vector as usize..][..3].iter_mut().zip(value) {
+                *sum += shape * f;
+            }
+        }
+    }
+
+    /// The nodal vectors of an element and its shape functions at a point: `N`, `N_x`, `N_y`, `N_xx`, `N_yy`, `N_xy`.
+    pub(crate) fn shape(&self, body: BodyId, element: usize, at: [f64; 2]) -> (Vec<usize>, [Vec<f64>; 6]) {
+        let block = &self.blocks[body.index()];
+        let vectors = block.vectors(element).iter().map(|v| *v as usize).collect();
+        (vectors, [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|orders| block.derivative(orders, at)))
+    }
+
+    /// The position, or a derivative of it, at a point of an element.
+    fn interpolate(&self, block: usize, element: usize, orders: [usize; 2], at: [f64; 2], q: &[f64]) -> Vector3<f64> {
+        let shape = self.blocks[block].derivative(orders, at);
+        let vectors = self.blocks[block].vectors(element);
+        shape.iter().zip(vectors).map(|(s, v)| *s * Vector3::from_column_slice(&q[3 * *v as usize..][..3])).sum()
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Number of nodal coordinates.
+    pub fn coordinates(&self) -> usize {
+        self.model.reference().len()
+    }
+
+    /// The coordinates that are not fixed, in the order of the equations.
+    pub fn free(&self) -> &[usize] {
+        &self.numbering.coordinate
+    }
+
+    /// Number of elements.
+    pub fn elements(&self) -> usize {
+        self.blocks.iter().map(|block| block.elements()).sum()
+    }
+
+    /// Number of different reference shapes among the elements: what is stored once each.
+    pub fn classes(&self) -> usize {
+        self.blocks.iter().map(|block| block.classes()).sum()
+    }
+
+    /// Number of numeric factorisations so far.
+    pub fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+
+    /// Time spent in each part so far.
+    pub fn timers(&self) -> Timers {
+        self.timers
+    }
+
+    /// Scalar mass matrix over all nodal vectors.
+    pub fn mass(&self) -> &SymmetricMatrix {
+        &self.mass
+    }
+
+    /// The mass that each nodal vector stands for in a uniform field, kg or kg m.
+    pub fn weight(&self) -> &[f64] {
+        &self.weight
+    }
+
+    /// Elastic force `Q_k` on all coordinates, and the strain energy.
+    ///
+    /// # Source
+    ///
+    /// Dufva and Shabana (2005), (25), (35).
+    pub fn internal_force(&mut self, q: &[f64], force: &mut [f64]) -> StrainEnergy {
+        let start = Instant::now();
+        self.evaluate(q, None);
+        self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
+        self.timers.assembly += start.elapsed();
+        self.energy()
+    }
+
+    /// Force of the loads `Q_e` on all coordinates at time (or load factor) `t`.
+    pub fn external_force(&self, q: &[f64], t: f64, force: &mut [f64]) {
+        force.fill(0.0);
+        for load in &self.dead {
+            let factor = load.history.factor(t);
+            for (sum, f) in force.iter_mut().zip(&load.force) {
+                *sum += factor * f;
+            }
+        }
+        for load in &self.followers {
+            let elements = self.blocks[load.block].as_ref();
+            load.add_force(elements, self.model.reference(), q, load.history.factor(t), force);
+        }
+    }
+
+    /// Elastic force as [`internal_force`](Self::internal_force), and the tangent `want.mass M + want.stiffness (dQ_k/dq
+    /// - dQ_e/dq)`, which is kept for [`factorize`](Self::factorize). Of the loads' part it is the symmetric half.
+    pub fn assemble(&mut self, q: &[f64], t: f64, want: Want<'_>, force: &mut [f64]) -> StrainEnergy {
+        let start = Instant::now();
+        self.evaluate(q, Some(want));
+        self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
+        for load in &self.followers {
+            let elements = self.blocks[load.block].as_ref();
+            let factor = want.stiffness * load.history.factor(t);
+            load.subtract_stiffness(elements, self.model.reference(), q, factor, &mut self.outcomes[load.block]);
+        }
+        self.scatter.sum(&self.blocks, &self.outcomes, &mut self.values);
+        self.timers.assembly += start.elapsed();
+        self.energy()
+    }
+
+    fn evaluate(&mut self, q: &[f64], want: Option<Want<'_>>) {
+        for (block, outcome) in self.blocks.iter().zip(&mut self.outcomes) {
+            block.evaluate(q, want, outcome);
+        }
+    }
+
+    fn energy(&self) -> StrainEnergy {
+        let mut energy = StrainEnergy::default();
+        for [membrane, bending] in self.outcomes.iter().flat_map(|outcome| &outcome.energy) {
+            energy.membrane += membrane;
+            energy.bending += bending;
+        }
+        energy
+    }
+
+    /// The pattern and the values of the tangent that was assembled last, over the free coordinates.
+    pub fn tangent(&self) -> (&Pattern, &[f64]) {
+        (self.scatter.pattern(), &self.values)
+    }
+
+    /// Factorises the tangent that was assembled last.
+    ///
+    /// # Errors
+    ///
+    /// It must be finite and not singular.
+    pub fn factorize(&mut self) -> Result<Inertia, LinearError> {
+        let start = Instant::now();
+        self.factorizations += 1;
+        let result = self.factorization.factorize(&self.values);
+        self.timers.factorization += start.elapsed();
+        result
+    }
+
+    /// Solves for the free coordinates: `solution = tangent^-1 right`, zero where fixed.
+    pub fn solve(&mut self, right: &[f64], solution: &mut [f64]) {
+        let start = Instant::now();
+        for (value, &coordinate) in self.free.iter_mut().zip(&self.numbering.coordinate) {
+            *value = right[coordinate];
+        }
+        self.factorization.solve(&mut self.free);
+        solution.fill(0.0);
+        for (value, &coordinate) in self.free.iter().zip(&self.numbering.coordinate) {
+            solution[coordinate] = *value;
+        }
+        self.timers.solve += start.elapsed();
+    }
+
+    /// Adds `M x` to `y`.
+    pub fn add_mass_times(&self, x: &[f64], y: &mut [f64]) {
+        self.mass.multiply_add::<3>(x, y);
+    }
+
+    /// Kinetic energy (J), momentum (kg m/s) and angular momentum about the origin (kg m2/s).
+    pub fn motion(&self, q: &[f64], v: &[f64]) -> (f64, [f64; 3], [f64; 3]) {
+        let mut momenta = vec![0.0; v.len()];
+        self.add_mass_times(v, &mut momenta);
+        let kinetic = 0.5 * v.iter().zip(&momenta).map(|(v, p)| v * p).sum::<f64>();
+        let mut momentum = Vector3::zeros();
+        let mut angular = Vector3::zeros();
+        for (a, weight) in self.weight.iter().enumerate() {
+            let at = |x: &[f64]| Vector3::from_column_slice(&x[3 * a..3 * a + 3]);
+            momentum += *weight * at(v);
+            angular += at(q).cross(&at(&momenta));
+        }
+        (kinetic, momentum.into(), angular.into())
+    }
+
+    /// Says which coordinate an equation is for.
+    pub fn describe(&self, equation: usize) -> String {
+        let coordinate = self.numbering.coordinate[equation];
+        let vector = coordinate / 3;
+        for body in self.model.bodies() {
+            let count = body.nodal_vectors().len();
+            let first = body.vector(0, 0);
+            if (first..first + body.grid().nodes() * count).contains(&vector) {
+                let node = (vector - first) / count;
+                let name = body.nodal_vectors()[(vector - first) % count].name();
+                let component = ["x", "y", "z"][coordinate % 3];
+                let at = Place::Point(body.grid().parameters(node));
+                return format!("{name}.{component} at {at} of body \"{}\"", body.name());
+            }
+        }
+        format!("coordinate {coordinate}")
+    }
+}
+
+/// The scalar mass matrix over all nodal vectors and its row sums in a uniform field.
+///
+/// # Source
+///
+/// Dufva and Shabana (2005), (37), (38).
+fn mass_matrix(model: &Model, blocks: &[Box<dyn ElementBlock>]) -> Result<(SymmetricMatrix, Vec<f64>), LinearError> {
+    let vectors = model.reference().len() / 3;
+    let all = || blocks.iter().flat_map(|block| (0..block.elements()).map(move |element| (block, element)));
+    let groups: Vec<Vec<usize>> =
+        all().map(|(block, element)| block.vectors(element).iter().map(|v| *v as usize).collect()).collect();
+    let pattern = Arc::new(Pattern::from_groups(vectors, &groups)?);
+    let mut values = vec![0.0; pattern.nnz()];
+    let mut weight = vec![0.0; vectors];
+    for ((block, element), group) in all().zip(&groups) {
+        let mass = block.mass(element);
+        for (b, &j) in group.iter().enumerate() {
+            weight[j] += block.weight(element)[b];
+            for (a, &i) in group[..=b].iter().enumerate() {
+                values[pattern.slot(i, j).expect("an entry of the pattern")] += mass[packed(a, b)];
+            }
+        }
+    }
+    Ok((SymmetricMatrix::new(pattern, values), weight))
+}

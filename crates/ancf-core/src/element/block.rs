@@ -1,0 +1,302 @@
+//! All elements of a body: what they share, and their energies, forces and tangents side by side.
+
+use std::collections::HashMap;
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::lanes::{Lanes, MAX_LANES, Vector};
+use crate::strain::packed;
+
+use super::constants::{COMPONENTS, Constants, Section, point_stride, to_lanes};
+use super::kernel::{Batch, Couplings, Totals};
+use super::tables::{Group, Tables};
+
+/// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
+const TASK: usize = 64;
+
+/// Which combination of mass and stiffness a tangent is, and how the stiffness is made.
+#[derive(Clone, Copy, Debug)]
+pub struct Want<'a> {
+    /// Factor of the mass matrix.
+    pub mass: f64,
+    /// Factor of the stiffness.
+    pub stiffness: f64,
+    /// Coordinates before the last Newton correction, if the geometric stiffness is to use the stress extrapolated
+    /// from there (mixed-integration-point Newton).
+    pub previous: Option<&'a [f64]>,
+}
+
+/// Energies, forces and tangents of all elements of a body.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Membrane and bending energy of each element.
+    pub energy: Vec<[f64; 2]>,
+    /// Elastic force on the nodal vectors of each element: `3 N` numbers an element.
+    pub force: Vec<f64>,
+    /// Packed symmetric blocks of each element's tangent, column by column, `a <= b`: `9 N (N + 1) / 2` numbers.
+    pub tangent: Vec<f64>,
+}
+
+/// The elements of a body, whatever their type.
+pub trait ElementBlock: Send + Sync {
+    /// Number of elements.
+    fn elements(&self) -> usize;
+    /// Number of nodal vectors of an element.
+    fn vectors_per_element(&self) -> usize;
+    /// The nodal vectors of an element, numbered through the model.
+    fn vectors(&self, element: usize) -> &[u32];
+    /// Packed scalar mass matrix of an element, `a <= b`.
+    fn mass(&self, element: usize) -> &[f64];
+    /// The mass each nodal vector of an element stands for in a uniform field.
+    fn weight(&self, element: usize) -> &[f64];
+    /// Number of different reference shapes among the elements.
+    fn classes(&self) -> usize;
+    /// Evaluates all elements at the nodal coordinates `q`; the tangents if they are wanted.
+    fn evaluate(&self, q: &[f64], want: Option<Want<'_>>, outcome: &mut Outcome);
+    /// The derivatives of an element's shape functions, `in_x` and `in_y` times, at `(xi, eta)`.
+    fn derivative(&self, orders: [usize; 2], point: [f64; 2]) -> Vec<f64>;
+}
+
+/// Elements with `N` nodal vectors, equal parameter sides and one section.
+pub(crate) struct Block<const N: usize> {
+    arch: Arch,
+    tables: Tables<N>,
+    couplings: Couplings,
+    classes: Vec<Constants>,
+    class_of: Vec<u32>,
+    vectors: Vec<[u32; N]>,
+}
+
+impl<const N: usize> Block<N> {
+    /// Elements on the nodal vectors `vectors`, whose reference state is the nodal coordinates `reference`.
+    pub fn new(tables: Tables<N>, vectors: Vec<[u32; N]>, reference: &[f64], section: Section) -> Self {
+        let mut classes: Vec<Constants> = Vec::new();
+        let mut known = HashMap::new();
+        let class_of = vectors
+            .iter()
+            .map(|element| {
+                let constants = Constants::new(&tables, &coordinates(element, reference), section);
+                *known.entry(fingerprint(&tables, &constants, section.thickness)).or_insert_with(|| {
+                    classes.push(constants);
+                    (classes.len() - 1) as u32
+                })
+            })
+            .collect();
+        let couplings = couplings(&tables, &classes);
+        Self { arch: Arch::new(), tables, couplings, classes, class_of, vectors }
+    }
+}
+
+/// The nodal vectors of an element.
+fn coordinates<const N: usize>(vectors: &[u32; N], q: &[f64]) -> [[f64; 3]; N] {
+    vectors.map(|v| [q[3 * v as usize], q[3 * v as usize + 1], q[3 * v as usize + 2]])
+}
+
+/// Equal for elements whose constants agree to rounding: each number in units of 2^-40 of the largest of its kind.
+fn fingerprint<const N: usize>(tables: &Tables<N>, constants: &Constants, thickness: f64) -> Vec<i64> {
+    let mut digits = Vec::with_capacity(constants.values.len() + constants.mass.len());
+    let mut append = |numbers: &mut dyn Iterator<Item = f64>, scale: f64| {
+        digits.extend(numbers.map(|x| (x / scale * 2.0_f64.powi(40)).round() as i64));
+    };
+    let mut rest = constants.values.as_slice();
+    let mut metric: f64 = 0.0;
+    for group in &tables.groups {
+        let (points, modes) = group.size();
+        let (at_points, others) = rest.split_at(points * point_stride(COMPONENTS));
+        let (matrix, others) = others.split_at(modes * (modes + 1) / 2);
+        rest = others;
+        let part = |from: usize, to: usize| {
+            at_points.chunks(point_stride(COMPONENTS)).flat_map(move |p| &p[from..to]).copied()
+        };
+        let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+        // Curvatures are compared with that which strains the faces by one: a flat surface has only rounding here.
+        let strain = match group {
+            Group::Membrane(_) => {
+                metric = largest(&mut part(1, 1 + COMPONENTS));
+                metric
+            }
+            Group::Bending(..) => metric / thickness,
+        };
+        append(&mut part(0, 1), largest(&mut part(0, 1)));
+        append(&mut part(1, 1 + COMPONENTS), strain);
+        let weights = 1 + COMPONENTS..point_stride(COMPONENTS);
+        append(&mut part(weights.start, weights.end), largest(&mut part(weights.start, weights.end)));
+        append(&mut matrix.iter().copied(), largest(&mut matrix.iter().copied()));
+    }
+    let mass = || constants.mass.iter().copied();
+    append(&mut mass(), mass().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs())));
+    digits
+}
+
+/// The pairs of generalised strains that are coupled in any class.
+fn couplings<const N: usize>(tables: &Tables<N>, classes: &[Constants]) -> Couplings {
+    let mut couplings = Vec::new();
+    let mut offset = 0;
+    for group in &tables.groups {
+        let (points, modes) = group.size();
+        let start = offset + points * point_stride(COMPONENTS);
+        let largest = |class: &Constants| (0..modes).map(|k| class.values[start + packed(k, k)]).fold(0.0, f64::max);
+        for l in 0..modes {
+            for k in 0..=l {
+                let position = packed(k, l);
+                if classes.iter().any(|class| class.values[start + position].abs() > 1e-15 * largest(class)) {
+                    couplings.push((k, l, position));
+                }
+            }
+        }
+        offset = start + modes * (modes + 1) / 2;
+    }
+    couplings
+}
+
+impl<const N: usize> ElementBlock for Block<N> {
+    fn elements(&self) -> usize {
+        self.vectors.len()
+    }
+
+    fn vectors_per_element(&self) -> usize {
+        N
+    }
+
+    fn vectors(&self, element: usize) -> &[u32] {
+        &self.vectors[element]
+    }
+
+    fn mass(&self, element: usize) -> &[f64] {
+        &self.classes[self.class_of[element] as usize].mass
+    }
+
+    fn weight(&self, element: usize) -> &[f64] {
+        &self.classes[self.class_of[element] as usize].weight
+    }
+
+    fn classes(&self) -> usize {
+        self.classes.len()
+    }
+
+    fn derivative(&self, orders: [usize; 2], point: [f64; 2]) -> Vec<f64> {
+        self.tables.derivative(orders, point).to_vec()
+    }
+
+    fn evaluate(&self, q: &[f64], want: Option<Want<'_>>, outcome: &mut Outcome) {
+        let elements = self.elements();
+        let tangent_size = if want.is_some() { 9 * N * (N + 1) / 2 } else { 0 };
+        outcome.energy.resize(elements, [0.0; 2]);
+        outcome.force.resize(elements * 3 * N, 0.0);
+        outcome.tangent.resize(elements * tangent_size, 0.0);
+        let task = |first: usize, energy: &mut [[f64; 2]], force: &mut [f64], tangent: &mut [f64]| {
+            self.arch.dispatch(Task { block: self, q, want, first, energy, force, tangent });
+        };
+        if elements <= TASK {
+            task(0, &mut outcome.energy, &mut outcome.force, &mut outcome.tangent);
+        } else if tangent_size == 0 {
+            let parts = outcome.energy.par_chunks_mut(TASK).zip(outcome.force.par_chunks_mut(TASK * 3 * N));
+            parts.enumerate().for_each(|(i, (energy, force))| task(i * TASK, energy, force, &mut []));
+        } else {
+            let parts = outcome.energy.par_chunks_mut(TASK).zip(outcome.force.par_chunks_mut(TASK * 3 * N));
+            let parts = parts.zip(outcome.tangent.par_chunks_mut(TASK * tangent_size));
+            parts.enumerate().for_each(|(i, ((energy, force), tangent))| task(i * TASK, energy, force, tangent));
+        }
+    }
+}
+
+/// Consecutive elements, evaluated with the instruction set that the processor has.
+struct Task<'a, const N: usize> {
+    block: &'a Block<N>,
+    q: &'a [f64],
+    want: Option<Want<'a>>,
+    first: usize,
+    energy: &'a mut [[f64; 2]],
+    force: &'a mut [f64],
+    tangent: &'a mut [f64],
+}
+
+impl<const N: usize> WithSimd for Task<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { block, q, want, first, energy, force, tangent } = self;
+        let count = energy.len();
+        let mut totals = Totals::<S, N>::new(simd, want.is_some());
+        let mut constants = Vec::new();
+        let mut constants_of = [u32::MAX; MAX_LANES];
+        for start in (0..count).step_by(S::F64_LANES) {
+            // Lanes beyond the last element repeat it; what they give is not stored.
+            let mut members = [0; MAX_LANES];
+            for (lane, member) in members[..S::F64_LANES].iter_mut().enumerate() {
+                *member = first + (start + lane).min(count - 1);
+            }
+            let members = &members[..S::F64_LANES];
+
+            let mut class_of = [u32::MAX; MAX_LANES];
+            for (lane, &member) in members.iter().enumerate() {
+                class_of[lane] = block.class_of[member];
+            }
+            if class_of != constants_of {
+                let mut classes = [&block.classes[0]; MAX_LANES];
+                for (class, &index) in classes.iter_mut().zip(&class_of[..members.len()]) {
+                    *class = &block.classes[index as usize];
+                }
+                to_lanes(simd, &classes[..members.len()], &mut constants);
+                constants_of = class_of;
+            }
+
+            let current = gather(simd, &block.vectors, members, q);
+            let previous = want.and_then(|w| w.previous).map(|p| gather(simd, &block.vectors, members, p));
+            totals.clear(simd);
+            let batch = Batch {
+                simd,
+                tables: &block.tables,
+                couplings: &block.couplings,
+                constants: &constants,
+                current: &current,
+                previous: previous.as_ref(),
+            };
+            batch.evaluate(&mut totals);
+
+            let lanes = S::F64_LANES.min(count - start);
+            for (i, part) in totals.energy.iter().enumerate() {
+                let values = part.to_array();
+                for lane in 0..lanes {
+                    energy[start + lane][i] = values[lane];
+                }
+            }
+            for (i, number) in totals.force.iter().flatten().enumerate() {
+                let values = number.to_array();
+                for lane in 0..lanes {
+                    force[(start + lane) * 3 * N + i] = values[lane];
+                }
+            }
+            if let Some(want) = want {
+                for (position, entries) in totals.tangent.iter().enumerate() {
+                    for i in 0..3 {
+                        for j in 0..3 {
+                            let values = entries[i][j].to_array();
+                            let mass = if i == j { want.mass } else { 0.0 };
+                            let target = 9 * position + 3 * i + j;
+                            for lane in 0..lanes {
+                                let inertia = mass * block.mass(members[lane])[position];
+                                tangent[(start + lane) * 9 * N * (N + 1) / 2 + target] =
+                                    want.stiffness * values[lane] + inertia;
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The nodal vectors of several elements in lanes.
+#[inline(always)]
+fn gather<S: Simd, const N: usize>(simd: S, vectors: &[[u32; N]], members: &[usize], q: &[f64]) -> [Vector<S>; N] {
+    let mut lanes = [[Lanes::splat(simd, 0.0); 3]; N];
+    for a in 0..N {
+        for i in 0..3 {
+            lanes[a][i] = Lanes::from_fn(simd, |lane| q[3 * vectors[members[lane]][a] as usize + i]);
+        }
+    }
+    lanes
+}

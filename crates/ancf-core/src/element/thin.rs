@@ -1,0 +1,86 @@
+//! The thin elements: membrane strain and curvature of a surface.
+
+use crate::quadrature::Rule;
+use crate::shape::{Polynomial, acm};
+use crate::strain::CurvatureLaw;
+
+use super::projection::Projection;
+use super::tables::{Derivatives, Group, Samples, Tables, derivative};
+
+/// How the membrane strain is sampled and weighted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Membrane {
+    /// 4 x 4 Gauss points, the strain projected on what the element can control: best in bending and on shells.
+    #[default]
+    Projected,
+    /// 4 x 4 Gauss points: the element of the paper; locks when bent by few elements.
+    Full,
+    /// 3 x 3 Lobatto points, with 2 x 2 Gauss points for the curvature: the cheapest.
+    Lobatto,
+}
+
+impl Membrane {
+    /// All variants.
+    pub const ALL: [Self; 3] = [Self::Projected, Self::Full, Self::Lobatto];
+
+    /// The name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Projected => "projected",
+            Self::Full => "full",
+            Self::Lobatto => "lobatto",
+        }
+    }
+
+    /// The rules for membrane strain and curvature.
+    fn rules(self) -> (Rule, Rule) {
+        match self {
+            Self::Projected | Self::Full => (Rule::Gauss(4), Rule::Gauss(3)),
+            Self::Lobatto => (Rule::Lobatto3, Rule::Gauss(2)),
+        }
+    }
+}
+
+/// The thin plate of the paper with 36 degrees of freedom, for parameters of the given sides.
+///
+/// # Source
+///
+/// Dufva and Shabana (2005), section 3 and Appendix 2.
+pub(crate) fn thin36(sides: [f64; 2], membrane: Membrane, curvature: CurvatureLaw) -> Tables<12> {
+    tables(sides, acm(sides[0], sides[1]), membrane, curvature)
+}
+
+/// The tables of a thin element with any shape functions.
+fn tables<const N: usize>(
+    sides: [f64; 2],
+    functions: [Polynomial; N],
+    membrane: Membrane,
+    curvature: CurvatureLaw,
+) -> Tables<N> {
+    let (membrane_rule, bending_rule) = membrane.rules();
+    let area = sides[0] * sides[1];
+    let at = |orders: [usize; 2], point: [f64; 2]| derivative(&functions, sides, orders, point);
+    let projection = (membrane == Membrane::Projected).then(|| Projection::membrane(area));
+    let groups = vec![
+        Group::Membrane(samples(area, membrane_rule, projection, |p| [[1, 0], [0, 1]].map(|d| at(d, p)))),
+        Group::Bending(
+            samples(area, bending_rule, None, |p| [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|d| at(d, p))),
+            curvature,
+        ),
+    ];
+    let mass = Rule::Gauss(5).square().into_iter().map(|(point, weight)| {
+        (Derivatives { value: at([0, 0], point), x: at([1, 0], point), y: at([0, 1], point) }, weight * area)
+    });
+    Tables { sides, functions, mass: mass.collect(), groups }
+}
+
+/// Samples at the points of a rule.
+fn samples<const N: usize, const D: usize>(
+    area: f64,
+    rule: Rule,
+    projection: Option<Projection>,
+    table: impl Fn([f64; 2]) -> [[f64; N]; D],
+) -> Samples<N, D> {
+    let (tables, weights) = rule.square().into_iter().map(|(point, weight)| (table(point), weight * area)).unzip();
+    Samples { tables, weights, projection }
+}

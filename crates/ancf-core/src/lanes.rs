@@ -1,0 +1,162 @@
+//! Several elements side by side: a SIMD register with the arithmetic of a number.
+//!
+//! Kernels are written once over [`Lanes`] and compiled for every instruction set that `pulp` knows; the widest one the
+//! processor has is chosen at run time. Every function here is inlined, so a kernel must be entered through
+//! [`pulp::Simd::vectorize`] (as [`pulp::Arch::dispatch`] does).
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use pulp::Simd;
+
+/// The widest register there is, in numbers.
+pub const MAX_LANES: usize = 8;
+
+/// One number for each of `S::F64_LANES` elements.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes<S: Simd> {
+    simd: S,
+    value: S::f64s,
+}
+
+/// A vector in space, for each lane.
+pub type Vector<S> = [Lanes<S>; 3];
+
+impl<S: Simd> Lanes<S> {
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn splat(simd: S, value: f64) -> Self {
+        Self { simd, value: simd.splat_f64s(value) }
+    }
+
+    /// `value` in every lane, for the same instruction set as `self`.
+    #[inline(always)]
+    pub fn like(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    /// The number that `entry` gives for each lane.
+    #[inline(always)]
+    pub fn from_fn(simd: S, entry: impl Fn(usize) -> f64) -> Self {
+        let mut buffer = [0.0; MAX_LANES];
+        for (lane, number) in buffer[..S::F64_LANES].iter_mut().enumerate() {
+            *number = entry(lane);
+        }
+        Self { simd, value: simd.partial_load_f64s(&buffer[..S::F64_LANES]) }
+    }
+
+    /// The number in each lane; the rest of the array is zero.
+    #[inline(always)]
+    pub fn to_array(self) -> [f64; MAX_LANES] {
+        let mut buffer = [0.0; MAX_LANES];
+        self.simd.partial_store_f64s(&mut buffer[..S::F64_LANES], self.value);
+        buffer
+    }
+
+    /// The register.
+    #[inline(always)]
+    pub fn value(self) -> S::f64s {
+        self.value
+    }
+
+    /// `self * factor + addend` in one rounding where the processor can.
+    #[inline(always)]
+    pub fn mul_add(self, factor: Self, addend: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.mul_add_e_f64s(self.value, factor.value, addend.value) }
+    }
+
+    /// `self * factor + addend` with the same factor in every lane: an entry of a shared table.
+    #[inline(always)]
+    pub fn scale_add(self, factor: f64, addend: Self) -> Self {
+        self.mul_add(self.like(factor), addend)
+    }
+
+    /// The square root.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self { simd: self.simd, value: self.simd.sqrt_f64s(self.value) }
+    }
+}
+
+impl<S: Simd> Add for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.add_f64s(self.value, other.value) }
+    }
+}
+
+impl<S: Simd> Sub for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.sub_f64s(self.value, other.value) }
+    }
+}
+
+impl<S: Simd> Mul for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.mul_f64s(self.value, other.value) }
+    }
+}
+
+impl<S: Simd> Div for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self { simd: self.simd, value: self.simd.div_f64s(self.value, other.value) }
+    }
+}
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.like(0.0) - self
+    }
+}
+
+impl<S: Simd> Mul<f64> for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: f64) -> Self {
+        self * self.like(factor)
+    }
+}
+
+/// The scalar product.
+#[inline(always)]
+pub fn dot<S: Simd>(a: Vector<S>, b: Vector<S>) -> Lanes<S> {
+    a[0].mul_add(b[0], a[1].mul_add(b[1], a[2] * b[2]))
+}
+
+/// The vector product.
+#[inline(always)]
+pub fn cross<S: Simd>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// `factor * a + b`.
+#[inline(always)]
+pub fn axpy<S: Simd>(factor: Lanes<S>, a: Vector<S>, b: Vector<S>) -> Vector<S> {
+    [factor.mul_add(a[0], b[0]), factor.mul_add(a[1], b[1]), factor.mul_add(a[2], b[2])]
+}
+
+/// `factor * a + b` with the same factor in every lane.
+#[inline(always)]
+pub fn table_axpy<S: Simd>(factor: f64, a: Vector<S>, b: Vector<S>) -> Vector<S> {
+    [a[0].scale_add(factor, b[0]), a[1].scale_add(factor, b[1]), a[2].scale_add(factor, b[2])]
+}
+
+/// `factor * a`.
+#[inline(always)]
+pub fn scale<S: Simd>(factor: Lanes<S>, a: Vector<S>) -> Vector<S> {
+    [factor * a[0], factor * a[1], factor * a[2]]
+}
+
+/// `a - b`.
+#[inline(always)]
+pub fn sub<S: Simd>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}

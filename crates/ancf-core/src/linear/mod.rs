@@ -1,0 +1,20 @@
+//! Symmetric sparse matrices: pattern, order of elimination, factorisation, product. The only place that names faer.
+//!
+//! A model numbers its nodes by [`order`], makes one [`Pattern`] of its free coordinates, and one [`Factorization`]
+//! from it. From then on only values change: assembly refills an array laid out as the pattern,
+//! [`Factorization::factorize`] and [`Factorization::solve`] work in storage that was allocated once.
+
+mod error;
+mod factor;
+mod ordering;
+mod pattern;
+mod sparse;
+mod symbolic;
+#[cfg(test)]
+mod testing;
+
+pub use error::LinearError;
+pub use factor::{Factorization, Inertia};
+pub use ordering::order;
+pub use pattern::Pattern;
+pub use sparse::SymmetricMatrix;

@@ -1,0 +1,114 @@
+//! Material laws: the constant stiffness between strain and stress components.
+
+use crate::error::InputError;
+
+/// A homogeneous, isotropic, linear elastic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    young: f64,
+    poisson: f64,
+    density: f64,
+}
+
+impl Material {
+    /// A material from Young's modulus (Pa), Poisson's ratio and density (kg/m3).
+    ///
+    /// # Errors
+    ///
+    /// Young's modulus must be positive and finite, Poisson's ratio above -1 and below 0.5, the density not negative
+    /// (zero is enough for statics).
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use ancf_core::Material;
+    /// assert!(Material::new(2.07e11, 0.3, 7810.0).is_ok());
+    /// assert_eq!(Material::new(2.07e11, 0.5, 7810.0).unwrap_err().argument, "nu");
+    /// ```
+    pub fn new(young: f64, poisson: f64, density: f64) -> Result<Self, InputError> {
+        InputError::check("E", young, young > 0.0 && young.is_finite(), "a positive number, Pa")?;
+        InputError::check("nu", poisson, poisson > -1.0 && poisson < 0.5, "above -1 and below 0.5")?;
+        InputError::check(
+            "density",
+            density,
+            density >= 0.0 && density.is_finite(),
+            "zero or a positive number, kg/m3",
+        )?;
+        Ok(Self { young, poisson, density })
+    }
+
+    /// Density, kg/m3.
+    pub fn density(&self) -> f64 {
+        self.density
+    }
+
+    /// The plane-stress stiffness (Pa) for covariant strain components `xx`, `yy`, doubled `xy`, measured in
+    /// coordinates with the contravariant metric `[a^xx, a^yy, a^xy]`.
+    ///
+    /// In an orthonormal frame, metric `[1, 1, 0]`, this is `E / (1 - nu^2) [[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu)/2]]`.
+    ///
+    /// # Source
+    ///
+    /// Dufva and Shabana (2005), (28); the components in other frames by the tensor
+    /// `E / (1 - nu^2) [nu a^ab a^cd + (1 - nu)/2 (a^ac a^bd + a^ad a^bc)]`.
+    pub fn plane_stress(&self, metric: [f64; 3]) -> [[f64; 3]; 3] {
+        let a = [[metric[0], metric[2]], [metric[2], metric[1]]];
+        let scale = self.young / (1.0 - self.poisson * self.poisson);
+        let pairs = [(0, 0), (1, 1), (0, 1)];
+        pairs.map(|(i, j)| {
+            pairs.map(|(k, l)| {
+                let shear = a[i][k] * a[j][l] + a[i][l] * a[j][k];
+                scale * (self.poisson * a[i][j] * a[k][l] + 0.5 * (1.0 - self.poisson) * shear)
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plane_stress_in_an_orthonormal_frame() {
+        let d = Material::new(2.0, 0.25, 1.0).unwrap().plane_stress([1.0, 1.0, 0.0]);
+        let scale = 2.0 / (1.0 - 0.0625);
+        let expected = [[1.0, 0.25, 0.0], [0.25, 1.0, 0.0], [0.0, 0.0, 0.375]];
+        for i in 0..3 {
+            for j in 0..3 {
+                assert!((d[i][j] - scale * expected[i][j]).abs() < 1e-15);
+            }
+        }
+    }
+
+    /// Half the strain energy of a given strain tensor does not depend on the coordinates it is measured in.
+    #[test]
+    fn plane_stress_is_a_tensor() {
+        let material = Material::new(3.0, 0.3, 1.0).unwrap();
+        // Coordinates x' with dx = F dx': covariant components E' = F^T E F, metric a' = F^T F.
+        let f = [[1.2, 0.4], [-0.3, 0.9]];
+        let e = [[0.02, 0.01], [0.01, -0.03]];
+        let pull = |m: [[f64; 2]; 2]| {
+            let mut out = [[0.0; 2]; 2];
+            for (i, row) in out.iter_mut().enumerate() {
+                for (j, entry) in row.iter_mut().enumerate() {
+                    for k in 0..2 {
+                        for l in 0..2 {
+                            *entry += f[k][i] * m[k][l] * f[l][j];
+                        }
+                    }
+                }
+            }
+            out
+        };
+        let energy = |metric: [f64; 3], e: [[f64; 2]; 2]| {
+            let d = material.plane_stress(metric);
+            let v = [e[0][0], e[1][1], 2.0 * e[0][1]];
+            (0..3).map(|i| (0..3).map(|j| v[i] * d[i][j] * v[j]).sum::<f64>()).sum::<f64>()
+        };
+        let a = pull([[1.0, 0.0], [0.0, 1.0]]);
+        let det = a[0][0] * a[1][1] - a[0][1] * a[0][1];
+        let inverse = [a[1][1] / det, a[0][0] / det, -a[0][1] / det];
+        let difference = energy(inverse, pull(e)) - energy([1.0, 1.0, 0.0], e);
+        assert!(difference.abs() < 1e-15, "{difference}");
+    }
+}

@@ -1,0 +1,118 @@
+//! Bodies: a reference surface, its mesh, its section and the element that models it.
+
+use crate::element::{Block, ElementBlock, Kind, Membrane, NodalVector, Section, thin36};
+use crate::error::InputError;
+use crate::material::Material;
+use crate::mesh::{Grid, Surface};
+use crate::strain::CurvatureLaw;
+
+/// What a plate is made of and how it is modelled.
+#[derive(Clone, Copy, Debug)]
+pub struct Plate {
+    /// The material.
+    pub material: Material,
+    /// Thickness, m.
+    pub thickness: f64,
+    /// The element type.
+    pub element: Kind,
+    /// How the membrane strain is sampled.
+    pub membrane: Membrane,
+    /// The variant of the curvature.
+    pub curvature: CurvatureLaw,
+}
+
+/// A body of a model.
+#[derive(Clone, Debug)]
+pub struct Body {
+    name: String,
+    grid: Grid,
+    plate: Plate,
+    first_vector: usize,
+}
+
+impl Body {
+    /// A body whose nodal vectors are numbered from `first_vector`.
+    pub(super) fn new(
+        name: &str,
+        surface: &Surface,
+        divisions: [usize; 2],
+        plate: Plate,
+        first_vector: usize,
+    ) -> Result<Self, InputError> {
+        let h = plate.thickness;
+        InputError::check("thickness", h, h > 0.0 && h.is_finite(), "a positive number, m")?;
+        let grid = Grid::new(surface.domain(), divisions)?;
+        Ok(Self { name: name.to_owned(), grid, plate, first_vector })
+    }
+
+    /// The name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The mesh.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// What the body is made of and how it is modelled.
+    pub fn plate(&self) -> &Plate {
+        &self.plate
+    }
+
+    /// The vectors at each node.
+    pub fn nodal_vectors(&self) -> &'static [NodalVector] {
+        self.plate.element.nodal_vectors()
+    }
+
+    /// The model-wide number of a node's nodal vector.
+    pub fn vector(&self, node: usize, index: usize) -> usize {
+        self.first_vector + node * self.nodal_vectors().len() + index
+    }
+
+    /// The model-wide number of a node's nodal vector of the given kind.
+    pub(super) fn find_vector(&self, node: usize, kind: NodalVector) -> Option<usize> {
+        self.nodal_vectors().iter().position(|v| *v == kind).map(|index| self.vector(node, index))
+    }
+
+    /// The model-wide numbers of an element's nodal vectors.
+    pub(crate) fn element_vectors(&self, element: usize) -> impl Iterator<Item = usize> {
+        let count = self.nodal_vectors().len();
+        self.grid.cell(element).into_iter().flat_map(move |node| (0..count).map(move |i| self.vector(node, i)))
+    }
+
+    /// The nodal coordinates of the reference surface.
+    pub(super) fn reference(&self, surface: &Surface) -> Vec<f64> {
+        (0..self.grid.nodes())
+            .flat_map(|node| {
+                let at = self.grid.parameters(node);
+                self.nodal_vectors().iter().flat_map(move |v| surface.derivative(v.orders(), at))
+            })
+            .collect()
+    }
+
+    /// The elements, ready to be evaluated; `reference` are the nodal coordinates of the whole model at rest.
+    pub(crate) fn elements(&self, reference: &[f64]) -> Box<dyn ElementBlock> {
+        let Plate { material, thickness, element, membrane, curvature } = self.plate;
+        let sides = self.grid.element_sides();
+        let section = Section { material, thickness };
+        match element {
+            Kind::Thin36 => {
+                Box::new(Block::new(thin36(sides, membrane, curvature), self.connectivity(), reference, section))
+            }
+        }
+    }
+
+    /// The nodal vectors of every element.
+    fn connectivity<const N: usize>(&self) -> Vec<[u32; N]> {
+        (0..self.grid.elements())
+            .map(|element| {
+                let mut vectors = [0; N];
+                for (target, vector) in vectors.iter_mut().zip(self.element_vectors(element)) {
+                    *target = vector as u32;
+                }
+                vectors
+            })
+            .collect()
+    }
+}

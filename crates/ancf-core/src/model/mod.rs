@@ -1,0 +1,186 @@
+//! Models: bodies, supports and loads, checked as they are added.
+
+mod body;
+mod history;
+mod load;
+mod rigid;
+
+pub use body::{Body, Plate};
+pub use history::History;
+pub use load::{Load, LoadKind};
+pub use rigid::RigidMotion;
+
+use crate::element::NodalVector;
+use crate::error::InputError;
+use crate::mesh::{Edge, End, Place, Surface};
+
+/// Refers to a body of the model that made it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BodyId(usize);
+
+impl BodyId {
+    /// The place of the body among those of its model.
+    pub(crate) fn index(self) -> usize {
+        self.0
+    }
+}
+
+/// Which coordinates of a node a support fixes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fix {
+    /// The nodal vector.
+    pub vector: NodalVector,
+    /// One component of it, or all three.
+    pub component: Option<usize>,
+}
+
+/// Bodies, supports and loads.
+///
+/// The nodal coordinates of all bodies form one vector: body after body, node after node, nodal vector after nodal
+/// vector, three components each.
+#[derive(Clone, Debug, Default)]
+pub struct Model {
+    bodies: Vec<Body>,
+    reference: Vec<f64>,
+    fixed: Vec<bool>,
+    loads: Vec<Load>,
+}
+
+impl Model {
+    /// A model without bodies.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a body.
+    ///
+    /// # Errors
+    ///
+    /// The name must be new, the thickness positive, the divisions at least one.
+    pub fn add_body(
+        &mut self,
+        name: &str,
+        surface: &Surface,
+        divisions: [usize; 2],
+        plate: Plate,
+    ) -> Result<BodyId, InputError> {
+        let new = self.bodies.iter().all(|body| body.name() != name);
+        InputError::check("name", name, new, "a name that no other body has")?;
+        let body = Body::new(name, surface, divisions, plate, self.reference.len() / 3)?;
+        self.reference.extend(body.reference(surface));
+        self.fixed.resize(self.reference.len(), false);
+        self.bodies.push(body);
+        Ok(BodyId(self.bodies.len() - 1))
+    }
+
+    /// Finds a body by its name.
+    ///
+    /// # Errors
+    ///
+    /// There must be one of that name.
+    pub fn find(&self, name: &str) -> Result<BodyId, InputError> {
+        let names = || self.bodies.iter().map(Body::name).collect::<Vec<_>>().join(", ");
+        let found = self.bodies.iter().position(|body| body.name() == name);
+        found.map(BodyId).ok_or_else(|| InputError::new("body", format!("\"{name}\""), names()))
+    }
+
+    /// The body.
+    pub fn body(&self, id: BodyId) -> &Body {
+        &self.bodies[id.0]
+    }
+
+    /// All bodies.
+    pub fn bodies(&self) -> &[Body] {
+        &self.bodies
+    }
+
+    /// All loads.
+    pub fn loads(&self) -> &[Load] {
+        &self.loads
+    }
+
+    /// The nodal coordinates at rest.
+    pub fn reference(&self) -> &[f64] {
+        &self.reference
+    }
+
+    /// Whether each nodal coordinate is fixed.
+    pub fn fixed(&self) -> &[bool] {
+        &self.fixed
+    }
+
+    /// Fixes coordinates of the nodes at a place at their reference values.
+    ///
+    /// # Errors
+    ///
+    /// The place must be on the body, the nodes must have the vector, a component is 0, 1 or 2.
+    pub fn fix(&mut self, id: BodyId, place: Place, fix: Fix) -> Result<(), InputError> {
+        let body = &self.bodies[id.0];
+        for node in body.grid().nodes_at(place)? {
+            let vector = body.find_vector(node, fix.vector).ok_or_else(|| {
+                let names: Vec<_> = body.nodal_vectors().iter().map(|v| v.name()).collect();
+                InputError::new("fix", fix.vector.name(), names.join(", "))
+            })?;
+            match fix.component {
+                None => self.fixed[3 * vector..3 * vector + 3].fill(true),
+                Some(c @ 0..3) => self.fixed[3 * vector + c] = true,
+                Some(c) => return Err(InputError::new("fix", c, "a component 0, 1 or 2")),
+            }
+        }
+        Ok(())
+    }
+
+    /// Fixes all coordinates of the nodes at a place.
+    ///
+    /// # Errors
+    ///
+    /// The place must be on the body.
+    pub fn clamp(&mut self, id: BodyId, place: Place) -> Result<(), InputError> {
+        for vector in self.bodies[id.0].nodal_vectors() {
+            self.fix(id, place, Fix { vector: *vector, component: None })?;
+        }
+        Ok(())
+    }
+
+    /// Adds a load.
+    ///
+    /// # Errors
+    ///
+    /// Its numbers must be finite, a point must lie in the body.
+    pub fn add_load(&mut self, load: Load) -> Result<(), InputError> {
+        let (name, numbers) = load.kind.magnitude();
+        InputError::check(name, format!("{numbers:?}"), numbers.iter().all(|x| x.is_finite()), "finite numbers")?;
+        if let LoadKind::Force { body, point, .. } = load.kind {
+            self.body(body).grid().locate(point)?;
+        }
+        self.loads.push(load);
+        Ok(())
+    }
+
+    /// The point a force can act at: a corner or a material point.
+    ///
+    /// # Errors
+    ///
+    /// Other places are refused.
+    pub fn point_at(&self, id: BodyId, place: Place) -> Result<[f64; 2], InputError> {
+        let [x, y] = *self.body(id).grid().domain();
+        let at = |range: [f64; 2], end: End| if end == End::High { range[1] } else { range[0] };
+        match place {
+            Place::Corner([ex, ey]) => Ok([at(x, ex), at(y, ey)]),
+            Place::Point(point) => Ok(point),
+            Place::Edge(_) | Place::All => Err(place.refuse("at", "a corner or a point [x, y]")),
+        }
+    }
+
+    /// The edge a line load or a moment can act on.
+    ///
+    /// # Errors
+    ///
+    /// Other places are refused.
+    pub fn edge_at(place: Place) -> Result<Edge, InputError> {
+        match place {
+            Place::Edge(edge) => Ok(edge),
+            _ => Err(place.refuse("at", "edge:x0, edge:x1, edge:y0 or edge:y1")),
+        }
+    }
+}

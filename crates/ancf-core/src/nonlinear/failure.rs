@@ -1,0 +1,118 @@
+//! Why a solve could not go on, and what to try.
+
+use crate::linear::LinearError;
+
+/// Why the equations of a step could not be solved.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Failure {
+    /// A force, a tangent or a correction is not finite.
+    #[error("the state became infinite or not a number in iteration {iteration}")]
+    NotFinite {
+        /// Number of the Newton iteration, from 1.
+        iteration: usize,
+    },
+    /// The tangent is singular.
+    #[error("the tangent is singular at {place} (pivot {pivot:.1e} of {scale:.1e}) in iteration {iteration}")]
+    Singular {
+        /// Number of the Newton iteration, from 1.
+        iteration: usize,
+        /// The coordinate whose pivot vanished.
+        place: String,
+        /// The pivot.
+        pivot: f64,
+        /// Size of what it was computed from.
+        scale: f64,
+    },
+    /// A correction is far larger than the model.
+    #[error("iteration {iteration} moves the model by {correction:.1e} of its size")]
+    Diverged {
+        /// Number of the Newton iteration, from 1.
+        iteration: usize,
+        /// The correction, relative to the size of the model.
+        correction: f64,
+    },
+    /// The corrections did not become small in time.
+    #[error("no convergence in {iterations} iterations, last correction {correction:.1e} of the size of the model")]
+    NotConverged {
+        /// Number of iterations.
+        iterations: usize,
+        /// The last correction, relative to the size of the model.
+        correction: f64,
+    },
+    /// The corrections stopped shrinking at the level of rounding, above the tolerance.
+    #[error("corrections stay at {floor:.1e} of the size of the model, rounding, above the tolerance {tolerance:.1e}")]
+    BelowRounding {
+        /// The smallest correction that was reached, relative to the size of the model.
+        floor: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// The supports leave rigid motions free.
+    #[error("the model can move rigidly: {motions}")]
+    Unsupported {
+        /// The motions, in words.
+        motions: String,
+    },
+    /// The solution found is not the next one on the path: it is too far away.
+    #[error("the solution found is {increment:.2} away from the last one (gradients), not connected to it")]
+    Disconnected {
+        /// Largest change of a gradient, relative to its reference size.
+        increment: f64,
+    },
+    /// The equilibrium is not stable.
+    #[error("the equilibrium is unstable: {negative} negative pivots")]
+    Unstable {
+        /// Number of negative pivots of the tangent.
+        negative: usize,
+    },
+    /// A body has no mass.
+    #[error("body \"{body}\" has no mass")]
+    Massless {
+        /// The body.
+        body: String,
+    },
+    /// The memory does not suffice.
+    #[error("the equations do not fit in the memory")]
+    TooLarge,
+    /// The observer asked to stop.
+    #[error("stopped on request")]
+    Stopped,
+}
+
+impl Failure {
+    /// What a user can try.
+    pub fn advice(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. } | Self::Diverged { .. } | Self::NotConverged { .. } => {
+                "smaller steps (step in motion, more load_factors in statics), a finer mesh where it bends most, \
+                 membrane = \"full\" in soft stretching motion; check units, thickness and loads"
+            }
+            Self::Singular { .. } => {
+                "check the supports near that place and the units; a structure at its limit load needs displacement \
+                 control or a dynamic run"
+            }
+            Self::BelowRounding { .. } => "a tolerance above the correction that was reached",
+            Self::Unsupported { .. } => "supports that hold these motions, or kind = \"dynamic\" for a free body",
+            Self::Disconnected { .. } => "more load_factors, or a smaller first step",
+            Self::Unstable { .. } => {
+                "the structure buckles or snaps here: a dynamic run with damping follows it; a small disturbing load shows the branch it takes"
+            }
+            Self::Massless { .. } => "a positive density, or kind = \"static\"",
+            Self::TooLarge => "a coarser mesh",
+            Self::Stopped => "run it again to go on",
+        }
+    }
+
+    /// The failure that a linear algebra error means in an iteration; `place` says which coordinate an equation is for.
+    pub(crate) fn from_linear(error: LinearError, iteration: usize, place: impl Fn(usize) -> String) -> Self {
+        match error {
+            LinearError::Singular { column, pivot, scale } => {
+                Self::Singular { iteration, place: place(column), pivot, scale }
+            }
+            LinearError::NotFinite { .. } => Self::NotFinite { iteration },
+            LinearError::TooLarge { .. } | LinearError::InvalidPattern { .. } | LinearError::IndexOutOfRange { .. } => {
+                Self::TooLarge
+            }
+        }
+    }
+}

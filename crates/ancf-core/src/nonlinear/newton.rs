@@ -1,0 +1,230 @@
+//! Newton's method, plain and with mixed integration points.
+
+use crate::assembly::{StrainEnergy, System};
+use crate::element::Want;
+use crate::error::InputError;
+use crate::observe::Observer;
+
+use super::{Failure, Problem};
+
+/// Which tangent Newton's method uses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Variant {
+    /// The geometric stiffness is that of the stress extrapolated from the last iterate: far fewer iterations in thin
+    /// structures, the same solution.
+    ///
+    /// # Source
+    ///
+    /// Magisano, Leonetti and Garcea (2017), mixed integration points.
+    #[default]
+    MixedIntegrationPoint,
+    /// The consistent tangent.
+    Plain,
+}
+
+/// Settings of Newton's method.
+#[derive(Clone, Copy, Debug)]
+pub struct Options {
+    /// Which tangent.
+    pub variant: Variant,
+    /// Largest correction of a converged iteration, relative to the size of the model.
+    pub tolerance: f64,
+    /// Iterations after which a step has failed.
+    pub max_iterations: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { variant: Variant::default(), tolerance: 1e-8, max_iterations: 30 }
+    }
+}
+
+impl Options {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    ///
+    /// The tolerance must lie between the rounding of numbers and one, the iterations must be at least one.
+    pub fn validate(&self) -> Result<(), InputError> {
+        let tolerance = self.tolerance;
+        InputError::check("tolerance", tolerance, (1e-15..1.0).contains(&tolerance), "from 1e-15 to below 1")?;
+        InputError::check("max_iterations", self.max_iterations, self.max_iterations > 0, "a whole number from 1")
+    }
+}
+
+/// How a solution was found.
+#[derive(Clone, Copy, Debug)]
+pub struct Report {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Negative pivots of the last tangent.
+    pub negative_pivots: usize,
+    /// Strain energy at the last evaluation of the forces, which is one correction before the solution.
+    pub strain: StrainEnergy,
+}
+
+/// A Newton solver: settings and working memory.
+pub struct Newton {
+    options: Options,
+    scale: Vec<f64>,
+    internal: Vec<f64>,
+    external: Vec<f64>,
+    residual: Vec<f64>,
+    correction: Vec<f64>,
+    previous: Vec<f64>,
+    offset: Vec<f64>,
+    iterations: usize,
+}
+
+/// A correction this many times the size of the model cannot lead anywhere.
+const ABSURD: f64 = 1e3;
+/// Corrections below this that no longer shrink are rounding.
+const ROUNDING: f64 = 1e-6;
+/// The energy of a correction, relative to the first one, that goes with convergence.
+const ENERGY: f64 = 1e-6;
+
+impl Newton {
+    /// A solver for the equations of `system`.
+    pub fn new(system: &System, options: Options) -> Self {
+        let zeros = || vec![0.0; system.coordinates()];
+        Self {
+            options,
+            scale: scales(system),
+            internal: zeros(),
+            external: zeros(),
+            residual: zeros(),
+            correction: zeros(),
+            previous: zeros(),
+            offset: zeros(),
+            iterations: 0,
+        }
+    }
+
+    /// Iterations of all solutions so far.
+    pub fn iterations(&self) -> usize {
+        self.iterations
+    }
+
+    /// Largest change between two states, relative to the size of the model.
+    pub fn distance(&self, from: &[f64], to: &[f64]) -> f64 {
+        from.iter().zip(to).zip(&self.scale).map(|((a, b), s)| (b - a).abs() / s).fold(0.0, f64::max)
+    }
+
+    /// Solves a problem, starting from `q`. If `last` is given, the geometric stiffness of the first iteration uses
+    /// the stress extrapolated from there.
+    ///
+    /// # Errors
+    ///
+    /// See [`Failure`]; `q` is then of no use.
+    pub fn solve(
+        &mut self,
+        system: &mut System,
+        problem: &Problem<'_>,
+        q: &mut [f64],
+        last: Option<&[f64]>,
+        observer: &dyn Observer,
+    ) -> Result<Report, Failure> {
+        let Options { variant, tolerance, max_iterations } = self.options;
+        let mip = variant == Variant::MixedIntegrationPoint;
+        let mut extrapolate = false;
+        if let (Some(last), true) = (last, mip) {
+            self.previous.copy_from_slice(last);
+            extrapolate = true;
+        }
+        let mut first_energy = f64::NAN;
+        let mut smallest = f64::INFINITY;
+        let mut stalled = 0;
+        let mut size = f64::INFINITY;
+        for iteration in 1..=max_iterations {
+            if observer.stop() {
+                return Err(Failure::Stopped);
+            }
+            self.iterations += 1;
+            let previous = extrapolate.then_some(self.previous.as_slice());
+            let want = Want { mass: problem.mass, stiffness: problem.stiffness, previous };
+            let strain = system.assemble(q, problem.t, want, &mut self.internal);
+            self.form_residual(system, problem, q);
+            if !self.residual.iter().all(|r| r.is_finite()) {
+                return Err(Failure::NotFinite { iteration });
+            }
+            let inertia =
+                system.factorize().map_err(|e| Failure::from_linear(e, iteration, |row| system.describe(row)))?;
+            system.solve(&self.residual, &mut self.correction);
+
+            size = self.correction.iter().zip(&self.scale).map(|(d, s)| d.abs() / s).fold(0.0, f64::max);
+            if !size.is_finite() {
+                return Err(Failure::NotFinite { iteration });
+            }
+            if size > ABSURD {
+                return Err(Failure::Diverged { iteration, correction: size });
+            }
+            self.previous.copy_from_slice(q);
+            for (q, d) in q.iter_mut().zip(&self.correction) {
+                *q -= d;
+            }
+            extrapolate = mip;
+
+            let energy = self.correction.iter().zip(&self.residual).map(|(d, r)| d * r).sum::<f64>().abs();
+            if iteration == 1 {
+                first_energy = energy;
+            }
+            // A first correction this small starts at the solution: its energy has nothing to be compared with.
+            let settled = energy <= ENERGY * first_energy || (iteration == 1 && size <= 1e-3 * tolerance);
+            if size <= tolerance && settled {
+                return Ok(Report { iterations: iteration, negative_pivots: inertia.negative, strain });
+            }
+            stalled = if size < 0.5 * smallest { 0 } else { stalled + 1 };
+            smallest = smallest.min(size);
+            if smallest < ROUNDING && stalled >= 4 {
+                return Err(Failure::BelowRounding { floor: smallest, tolerance });
+            }
+        }
+        Err(Failure::NotConverged { iterations: max_iterations, correction: size })
+    }
+
+    /// `residual = c M (q - q*) + k (Q_k - Q_e) + p`.
+    fn form_residual(&mut self, system: &System, problem: &Problem<'_>, q: &[f64]) {
+        system.external_force(q, problem.t, &mut self.external);
+        for i in 0..q.len() {
+            self.residual[i] = problem.stiffness * (self.internal[i] - self.external[i]) + problem.constant[i];
+        }
+        if problem.mass != 0.0 {
+            for i in 0..q.len() {
+                self.offset[i] = problem.mass * (q[i] - problem.origin[i]);
+            }
+            system.add_mass_times(&self.offset, &mut self.residual);
+        }
+    }
+}
+
+/// The size that a correction of each coordinate is compared with: the extent of the body for positions, and what
+/// moves a position by as much for gradients.
+fn scales(system: &System) -> Vec<f64> {
+    let model = system.model();
+    let mut scale = vec![1.0; system.coordinates()];
+    for body in model.bodies() {
+        let extent = extent(body, model.reference());
+        let ranges = body.grid().domain().map(|[from, to]| to - from);
+        for node in 0..body.grid().nodes() {
+            for (index, vector) in body.nodal_vectors().iter().enumerate() {
+                let (dx, dy) = vector.orders();
+                let v = body.vector(node, index);
+                scale[3 * v..3 * v + 3].fill(extent / (ranges[0].powi(dx) * ranges[1].powi(dy)));
+            }
+        }
+    }
+    scale
+}
+
+/// Diagonal of the box around a body at rest.
+fn extent(body: &crate::model::Body, reference: &[f64]) -> f64 {
+    let positions = (0..body.grid().nodes()).map(|node| &reference[3 * body.vector(node, 0)..][..3]);
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for r in positions {
+        for c in 0..3 {
+            low[c] = low[c].min(r[c]);
+            high[c] = high[c].max(r[c]);
+        }
+    }
+    (0..3).map(|c| (high[c] - low[c]).powi(2)).sum::<f64>().sqrt()
+}

@@ -1,0 +1,49 @@
+//! What a solve tells while it runs, and how it is stopped.
+
+use crate::assembly::StrainEnergy;
+
+/// A state that was accepted: an output of a solve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Time (s), or load factor in statics.
+    pub t: f64,
+    /// Nodal coordinates.
+    pub q: Vec<f64>,
+    /// Their velocities; zeros in statics.
+    pub v: Vec<f64>,
+    /// Their accelerations; zeros in statics.
+    pub a: Vec<f64>,
+    /// Strain energy, J.
+    pub strain: StrainEnergy,
+    /// Kinetic energy, J.
+    pub kinetic: f64,
+    /// Work done by the loads since the start, J.
+    pub work: f64,
+    /// Momentum, kg m/s.
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin, kg m2/s.
+    pub angular_momentum: [f64; 3],
+    /// Negative pivots of the tangent near this state, where they were counted.
+    pub negative_pivots: Option<usize>,
+}
+
+/// Follows a solve.
+pub trait Observer {
+    /// An output was reached.
+    fn state(&mut self, state: State);
+
+    /// Time (or load factor) that has been reached.
+    fn reached(&mut self, _t: f64) {}
+
+    /// Whether to stop; asked before every Newton iteration.
+    fn stop(&self) -> bool {
+        false
+    }
+}
+
+/// Keeps all states.
+impl Observer for Vec<State> {
+    fn state(&mut self, state: State) {
+        self.push(state);
+    }
+}
