@@ -5,10 +5,9 @@ use std::str::FromStr;
 use nalgebra::Vector3;
 use pulp::Scalar;
 
-use crate::assembly::System;
 use crate::error::InputError;
 use crate::lanes::{Lanes, Vector};
-use crate::model::BodyId;
+use crate::model::{BodyId, Model};
 use crate::strain::{Curvature, Measure, Metric};
 
 /// What can be evaluated at a material point.
@@ -73,11 +72,12 @@ impl MaterialPoint {
     /// # Errors
     ///
     /// The point must lie in the body.
-    pub fn new(system: &System, body: BodyId, point: [f64; 2]) -> Result<Self, InputError> {
-        let (element, at) = system.model().body(body).grid().locate(point)?;
-        let (vectors, tables) = system.shape(body, element, at);
-        let reference = tables.each_ref().map(|table| interpolate(table, &vectors, system.model().reference()));
-        Ok(Self { vectors, tables, reference, law: system.model().body(body).plate().curvature })
+    pub fn new(model: &Model, body: BodyId, point: [f64; 2]) -> Result<Self, InputError> {
+        let law = model.body(body).plate().curvature;
+        let (element, at) = model.body(body).grid().locate(point)?;
+        let (vectors, tables) = model.body(body).shape(element, at);
+        let reference = tables.each_ref().map(|table| interpolate(table, &vectors, model.reference()));
+        Ok(Self { vectors, tables, reference, law })
     }
 
     /// A quantity at nodal coordinates `q` and velocities `v`: three components.

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 use crate::element::{ElementBlock, Outcome, Want};
 use crate::linear::{Factorization, Inertia, LinearError, Pattern, SymmetricMatrix};
 use crate::mesh::Place;
-use crate::model::{BodyId, History, LoadKind, Model};
+use crate::model::{History, LoadKind, Model};
 use crate::quadrature::Rule;
 use crate::strain::packed;
 
@@ -175,13 +175,6 @@ impl System {
                 *sum += shape * f;
             }
         }
-    }
-
-    /// The nodal vectors of an element and its shape functions at a point: `N`, `N_x`, `N_y`, `N_xx`, `N_yy`, `N_xy`.
-    pub(crate) fn shape(&self, body: BodyId, element: usize, at: [f64; 2]) -> (Vec<usize>, [Vec<f64>; 6]) {
-        let block = &self.blocks[body.index()];
-        let vectors = block.vectors(element).iter().map(|v| *v as usize).collect();
-        (vectors, [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|orders| block.derivative(orders, at)))
     }
 
     /// The position, or a derivative of it, at a point of an element.

@@ -1,6 +1,6 @@
 //! What all elements with the same sides in their parameters share.
 
-use crate::shape::Polynomial;
+use crate::shape::{Polynomial, acm};
 use crate::strain::CurvatureLaw;
 
 use super::projection::Projection;
@@ -29,6 +29,14 @@ impl Kind {
             Self::Thin36 => &[NodalVector::R, NodalVector::RX, NodalVector::RY],
         }
     }
+
+    /// The derivatives of the shape functions of an element with the given sides, `in_x` and `in_y` times, at
+    /// `(xi, eta)`.
+    pub(crate) fn shape_functions(self, sides: [f64; 2], orders: [usize; 2], at: [f64; 2]) -> Vec<f64> {
+        match self {
+            Self::Thin36 => derivative(&acm(sides[0], sides[1]), sides, orders, at).to_vec(),
+        }
+    }
 }
 
 /// A vector at a node: the position or one of its gradients.
@@ -43,6 +51,9 @@ pub enum NodalVector {
 }
 
 impl NodalVector {
+    /// All nodal vectors that some element has.
+    pub const ALL: [Self; 3] = [Self::R, Self::RX, Self::RY];
+
     /// The name in scene files.
     pub fn name(self) -> &'static str {
         match self {

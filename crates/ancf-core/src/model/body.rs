@@ -103,6 +103,15 @@ impl Body {
         }
     }
 
+    /// The nodal vectors of an element and its shape functions at a point of it: `N`, `N_x`, `N_y`, `N_xx`, `N_yy`,
+    /// `N_xy`.
+    pub(crate) fn shape(&self, element: usize, at: [f64; 2]) -> (Vec<usize>, [Vec<f64>; 6]) {
+        const ORDERS: [[usize; 2]; 6] = [[0, 0], [1, 0], [0, 1], [2, 0], [0, 2], [1, 1]];
+        let sides = self.grid.element_sides();
+        let tables = ORDERS.map(|orders| self.plate.element.shape_functions(sides, orders, at));
+        (self.element_vectors(element).collect(), tables)
+    }
+
     /// The nodal vectors of every element.
     fn connectivity<const N: usize>(&self) -> Vec<[u32; N]> {
         (0..self.grid.elements())

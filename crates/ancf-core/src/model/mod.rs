@@ -10,6 +10,8 @@ pub use history::History;
 pub use load::{Load, LoadKind};
 pub use rigid::RigidMotion;
 
+use std::str::FromStr;
+
 use crate::element::NodalVector;
 use crate::error::InputError;
 use crate::mesh::{Edge, End, Place, Surface};
@@ -32,6 +34,23 @@ pub struct Fix {
     pub vector: NodalVector,
     /// One component of it, or all three.
     pub component: Option<usize>,
+}
+
+impl FromStr for Fix {
+    type Err = InputError;
+
+    /// Reads `r_x` (all components) or `r_x.z` (one).
+    fn from_str(text: &str) -> Result<Self, InputError> {
+        let names = || NodalVector::ALL.map(NodalVector::name).join(", ");
+        let refuse =
+            || InputError::new("fix", format!("\"{text}\""), format!("{}, or one component of one, as r.x", names()));
+        let (name, component) = match text.split_once('.') {
+            None => (text, None),
+            Some((name, axis)) => (name, Some(["x", "y", "z"].iter().position(|a| *a == axis).ok_or_else(refuse)?)),
+        };
+        let vector = NodalVector::ALL.into_iter().find(|v| v.name() == name).ok_or_else(refuse)?;
+        Ok(Self { vector, component })
+    }
 }
 
 /// Bodies, supports and loads.

@@ -17,8 +17,9 @@ pub struct RigidMotion {
     pub motion: [f64; 6],
 }
 
-impl fmt::Display for RigidMotion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl RigidMotion {
+    /// The motion in words.
+    pub fn describe(&self) -> String {
         let names = [
             "translation along x",
             "translation along y",
@@ -29,7 +30,13 @@ impl fmt::Display for RigidMotion {
         ];
         let parts: Vec<_> =
             names.iter().zip(self.motion).filter(|(_, m)| m.abs() > 0.1).map(|(name, _)| *name).collect();
-        write!(f, "body \"{}\": {}", self.body, parts.join(" with "))
+        parts.join(" with ")
+    }
+}
+
+impl fmt::Display for RigidMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "body \"{}\": {}", self.body, self.describe())
     }
 }
 

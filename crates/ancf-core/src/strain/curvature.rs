@@ -15,6 +15,19 @@ pub enum CurvatureLaw {
     Koiter,
 }
 
+impl CurvatureLaw {
+    /// All variants.
+    pub const ALL: [Self; 2] = [Self::Paper, Self::Koiter];
+
+    /// The name in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Koiter => "koiter",
+        }
+    }
+}
+
 /// `kappa_xx`, `kappa_yy` and `2 kappa_xy` for the gradients `r_x`, `r_y`, `r_xx`, `r_yy`, `r_xy`.
 ///
 /// `kappa_ab = f r_ab . n` with `n = r_x x r_y`, `f = |N|^m / |n|^(m + 1)` and `m` = 2 or 0.

@@ -1,0 +1,45 @@
+//! The extension module `ancf._core`: declarations only, the mechanics is in `ancf_core`.
+
+mod arrays;
+mod errors;
+mod model;
+mod run;
+mod shape;
+mod solve;
+
+use pyo3::prelude::*;
+
+/// The mechanics of `ancf`, in Rust.
+#[pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::errors::InputError;
+    #[pymodule_export]
+    use super::info;
+    #[pymodule_export]
+    use super::model::Model;
+    #[pymodule_export]
+    use super::run::Run;
+    #[pymodule_export]
+    use super::shape::Shape;
+    #[pymodule_export]
+    use super::solve::{simulate, solve_static};
+
+    #[allow(non_upper_case_globals, reason = "the name that Python expects")]
+    #[pymodule_export]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+}
+
+/// What runs here: version, threads, instruction set.
+#[pyfunction]
+fn info() -> std::collections::BTreeMap<&'static str, String> {
+    let (name, lanes) = ancf_core::simd();
+    [
+        ("core", env!("CARGO_PKG_VERSION").to_owned()),
+        ("build", if cfg!(debug_assertions) { "debug" } else { "release" }.to_owned()),
+        ("threads", rayon::current_num_threads().to_string()),
+        ("simd", name.to_owned()),
+        ("lanes", lanes.to_string()),
+    ]
+    .into()
+}

@@ -1,0 +1,76 @@
+"""A film of a result."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
+from matplotlib.figure import Figure
+
+from ancf.errors import InputError, Mistake, show
+from ancf.plot import heading
+from ancf.result import Result
+from ancf.stage import Stage
+
+_FACETS = 600
+_FRAMES = 100
+_FRAMES_PER_SECOND = 20
+_DPI = 90
+
+
+def animate(result: Result, path: str | os.PathLike[str], title: str = "") -> None:
+    """Write the motion as a film, of up to 100 of its states.
+
+    Parameters
+    ----------
+    result : Result
+        What to draw.
+    path : str or path
+        The file; ".gif" or, with ffmpeg, ".mp4".
+    title : str, optional
+        Written above.
+
+    Raises
+    ------
+    InputError
+        If the file has another ending, or ffmpeg is needed and missing.
+    """
+    writer = check_film(path)
+    figure = Figure(figsize=(7, 6), dpi=_DPI, layout="constrained")
+    stage = Stage(figure, result, _FACETS)
+    with writer.saving(figure, str(path), _DPI):
+        for state in np.unique(np.linspace(0, len(result.t) - 1, _FRAMES).round().astype(int)).tolist():
+            figure.suptitle(heading(result, state, title))
+            artists = stage.draw(state)
+            if state == 0:
+                # Laid out once: half the time, and nothing trembles.
+                figure.draw_without_rendering()
+                figure.set_layout_engine("none")
+            writer.grab_frame()
+            for artist in artists:
+                artist.remove()
+
+
+def check_film(path: str | os.PathLike[str]) -> AbstractMovieWriter:
+    """Return what writes such a file.
+
+    Parameters
+    ----------
+    path : str or path
+        The file.
+
+    Raises
+    ------
+    InputError
+        If it ends neither in ".gif" nor in ".mp4", or ffmpeg is needed and missing.
+    """
+    ending = Path(path).suffix
+    if ending == ".gif":
+        return PillowWriter(fps=_FRAMES_PER_SECOND)
+    if ending != ".mp4":
+        raise InputError(Mistake((str(path),), f"must end in .gif or .mp4, not {show(ending)}"))
+    if not FFMpegWriter.isAvailable():
+        raise InputError(Mistake((str(path),), "needs the program ffmpeg, which was not found; a .gif does not"))
+    return FFMpegWriter(fps=_FRAMES_PER_SECOND)

@@ -1,0 +1,151 @@
+"""What all inputs share: a frozen, strictly checked class, and the types of its fields."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Annotated, Any, Self
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails
+
+from ancf.errors import InputError, Mistake, one_of, show
+
+_WORDS = {
+    "Input should": "must",
+    "a valid integer": "a whole number",
+    "a valid dictionary": "a table",
+    "a valid mapping": "a table",
+    "a valid boolean": "true or false",
+    "a valid ": "a ",
+}
+
+
+class Input(BaseModel):
+    """A frozen set of named values, checked when it is made.
+
+    Python and scene files use the same classes: the keys of a table are the keyword arguments. Lists, tuples and
+    arrays are taken alike and kept as tuples.
+
+    Raises
+    ------
+    InputError
+        Lists every unknown or missing name, wrong type and impossible value.
+    """
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+    def __init__(self, /, **values: Any) -> None:
+        try:
+            super().__init__(**{name: _plain(value) for name, value in values.items()})
+        except ValidationError as error:
+            raise InputError(*_mistakes(error, type(self))) from None
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    return tuple(_plain(item) for item in value) if isinstance(value, (list, tuple)) else value
+
+
+def _mistakes(error: ValidationError, owner: type[Input]) -> Iterator[Mistake]:
+    for item in error.errors(include_url=False):
+        cause = item.get("ctx", {}).get("error")
+        if isinstance(cause, InputError):
+            yield from cause.under(*item["loc"]).mistakes
+        else:
+            yield Mistake(item["loc"], *_told(item, owner))
+
+
+def _told(item: ErrorDetails, owner: type[Input]) -> tuple[str, str | None]:
+    """Return what is allowed and what was given."""
+    shown = show(item["input"])
+    context = item.get("ctx", {})
+    match item["type"]:
+        case "missing":
+            return "is missing", None
+        case "extra_forbidden":
+            return f"unknown key; {one_of(owner.model_fields, item['loc'][-1])}", shown
+        case "literal_error":
+            allowed = context["expected"].replace("'", "").replace(" or ", ", ").split(", ")
+            return one_of(allowed, item["input"]), shown
+        case "value_error":
+            return str(context["error"]), shown
+        case "sequence_str" | "sequence_type" | "tuple_type" | "is_instance_of":
+            return "must be a list", shown
+        case _:
+            message = item["msg"]
+            for theirs, ours in _WORDS.items():
+                message = message.replace(theirs, ours)
+            return message, shown
+
+
+class OnBody(Input):
+    """An input that belongs to one body.
+
+    Parameters
+    ----------
+    body : str, optional
+        Its name; may be left out where the model has just one.
+    """
+
+    body: str = ""
+
+    def find_body(self, bodies: Iterable[str]) -> Self:
+        """Return the same input with its body filled in, or raise `InputError` if it is not one of `bodies`."""
+        names = list(bodies)
+        if not self.body:
+            if len(names) > 1:
+                raise InputError(Mistake(("body",), f"is missing; {one_of(names)}"))
+            return self.model_copy(update={"body": names[0]})
+        if self.body not in names:
+            raise InputError(Mistake(("body",), one_of(names, self.body), show(self.body)))
+        return self
+
+
+def table(*classes: type[Input], key: str | None = None) -> Callable[[Any], Input]:
+    """Return a validator that takes an instance of one of `classes`, or a table from which to make one.
+
+    Parameters
+    ----------
+    *classes : type
+        What is allowed.
+    key : str, optional
+        The entry of a table that names the class, which has it as a class attribute of the same name. Needed unless
+        there is just one class.
+    """
+    names = " or ".join(cls.__name__ for cls in classes)
+
+    def make(value: Any) -> Input:
+        if isinstance(value, classes):
+            return value
+        if not isinstance(value, dict):
+            raise ValueError(f"must be a table (in Python: {names})")
+        if key is None:
+            return classes[0](**value)
+        tags = {getattr(cls, key): cls for cls in classes}
+        if key not in value:
+            raise InputError(Mistake((key,), f"is missing; {one_of(tags)}"))
+        tag = value[key]
+        if not isinstance(tag, str) or tag not in tags:
+            raise InputError(Mistake((key,), one_of(tags, tag), show(tag)))
+        return tags[tag](**{name: item for name, item in value.items() if name != key})
+
+    return make
+
+
+def _count(number: int) -> BeforeValidator:
+    def check(value: Any) -> Any:
+        if not isinstance(value, tuple) or len(value) != number:
+            raise ValueError(f"must be a list of {number} numbers")
+        return value
+
+    return BeforeValidator(check)
+
+
+Positive = Annotated[float, Field(gt=0)]
+PositiveInt = Annotated[int, Field(gt=0)]
+Pair = Annotated[tuple[Positive, Positive], _count(2)]
+PairOfInts = Annotated[tuple[PositiveInt, PositiveInt], _count(2)]
+Vector = Annotated[tuple[float, float, float], _count(3)]
+Point = Annotated[tuple[float, float], _count(2)]

@@ -1,0 +1,136 @@
+"""The files of a run: summary.json and result.npz, written whole or not at all."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ancf.errors import InputError, Mistake
+from ancf.result import Result
+
+SUMMARY = "summary.json"
+STATES = "result.npz"
+
+
+def make_folder(folder: Path) -> list[Path]:
+    """Make a folder that can be written to.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder, with any that are missing above it.
+
+    Returns
+    -------
+    list of Path
+        The folders that were made, innermost first.
+
+    Raises
+    ------
+    InputError
+        If it cannot be made or written to; nothing is left behind.
+    """
+    made: list[Path] = []
+    try:
+        for missing in reversed([path for path in (folder, *folder.parents) if not path.exists()]):
+            missing.mkdir()
+            made.insert(0, missing)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        remove_folders(made)
+        raise InputError(Mistake((str(folder),), f"cannot be written to: {error.strerror}")) from None
+    return made
+
+
+def remove_folders(folders: list[Path]) -> None:
+    """Remove empty folders, innermost first."""
+    for folder in folders:
+        folder.rmdir()
+
+
+@contextmanager
+def replacing(*paths: Path) -> Iterator[tuple[Path, ...]]:
+    """Give temporary names for files, which take their places together when the `with` statement ends well."""
+    temporary = tuple(path.with_name(f".{os.getpid()}-{path.name}") for path in paths)
+    try:
+        yield temporary
+        for source, target in zip(temporary, paths, strict=True):
+            source.replace(target)
+    finally:
+        for source in temporary:
+            source.unlink(missing_ok=True)
+
+
+def write_result(folder: Path, title: str, result: Result) -> None:
+    """Write summary.json and result.npz, the arrays t, q, v, a.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to; it exists.
+    title : str
+        Of the scene.
+    result : Result
+        What to write.
+
+    Raises
+    ------
+    OSError
+        If a file cannot be written; an earlier run's files are left as they were.
+    """
+    with replacing(folder / STATES, folder / SUMMARY) as (states, summary):
+        with states.open("wb") as file:
+            np.savez_compressed(file, t=result.t, q=result.q, v=result.v, a=result.a)
+        summary.write_text(json.dumps(summarize(title, result), indent=1, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def summarize(title: str, result: Result) -> dict[str, Any]:
+    """Return what summary.json holds; numbers that are not finite become None.
+
+    Parameters
+    ----------
+    title : str
+        Of the scene.
+    result : Result
+        What to summarize.
+
+    Returns
+    -------
+    dict
+        Of plain Python values.
+    """
+    energy = result.energy
+    return {
+        "title": title,
+        "status": result.status,
+        "reached": _plain(result.reached),
+        "reason": result.reason,
+        "advice": result.advice,
+        "counts": _plain(result.counts),
+        "seconds": _plain(result.seconds),
+        "probes": {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()},
+        "energy": _plain({name: getattr(energy, name) for name in ("t", "kinetic", "membrane", "bending", "loads")}),
+    }
+
+
+def _plain(value: Any) -> Any:
+    match value:
+        case np.ndarray() | np.generic():
+            return _plain(value.tolist())
+        case dict():
+            return {key: _plain(item) for key, item in value.items()}
+        case list():
+            return [_plain(item) for item in value]
+        case float() if not math.isfinite(value):
+            return None
+        case _:
+            return value

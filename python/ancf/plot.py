@@ -1,0 +1,74 @@
+"""A picture of a result: the bodies at rest and deformed, and what the probes recorded."""
+
+from __future__ import annotations
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
+
+from ancf.probes import QUANTITIES, Probe, Quantity
+from ancf.result import Result
+from ancf.stage import Stage
+
+_FACETS = 2500
+_EARLIER_SHAPES = 3
+_STYLES = ("-", "--", ":")
+
+
+def plot(result: Result, title: str = "") -> Figure:
+    """Draw the bodies at rest and deformed, and the records of the probes.
+
+    Parameters
+    ----------
+    result : Result
+        What to draw.
+    title : str, optional
+        Written above.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        To be saved with its ``savefig``.
+    """
+    probes = result.model.probes
+    figure = Figure(figsize=(12.5 if probes else 8, 6.5), dpi=130, layout="constrained")
+    figure.suptitle(heading(result, -1, title), fontsize="x-large")
+    columns = 2 if probes else 1
+    parts = figure.subfigures(1, columns, squeeze=False, width_ratios=(1.3, 1)[:columns])[0]
+    if probes:
+        _draw_records(parts[1], result)
+    Stage(parts[0], result, _FACETS).draw(len(result.t) - 1, between=_EARLIER_SHAPES)
+    return figure
+
+
+def heading(result: Result, state: int, title: str) -> str:
+    """Say what is drawn: the title, and the time or load factor of a state."""
+    place = f"{result.run.parameter} = {result.t[state]:.4g} {result.run.unit}".rstrip()
+    return f"{title}, {place}" if title else place
+
+
+def _draw_records(figure: FigureBase, result: Result) -> None:
+    """Draw the probes of each quantity into axes of their own."""
+    groups: dict[Quantity, list[Probe]] = {}
+    for probe in result.model.probes:
+        groups.setdefault(probe.quantity, []).append(probe)
+    panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
+    colours = {probe.name: f"C{index}" for index, probe in enumerate(result.model.probes)}
+    for axes, (quantity, probes) in zip(panels, groups.items(), strict=True):
+        _draw_quantity(axes, result, quantity, probes, colours)
+    panels[-1].set_xlabel(" / ".join(part for part in (result.run.parameter, result.run.unit) if part))
+
+
+def _draw_quantity(
+    axes: Axes, result: Result, quantity: Quantity, probes: list[Probe], colours: dict[str, str]
+) -> None:
+    unit, components = QUANTITIES[quantity]
+    marker = "o" if len(result.t) < 20 else ""
+    for probe in probes:
+        record = result.probes[probe.name]
+        for values, component, style in zip(record.value.T, components, _STYLES, strict=True):
+            label = f"{probe.name} {component}"
+            axes.plot(record.t, values, style, marker=marker, markersize=3.5, color=colours[probe.name], label=label)
+    axes.set_ylabel(" / ".join(part for part in (quantity.replace("_", " "), unit) if part))
+    axes.grid(alpha=0.25)
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.legend(ncols=len(probes), fontsize="small", frameon=False, loc="best")

@@ -1,0 +1,61 @@
+"""Probes: quantities to record at material points."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, NamedTuple, TypeAlias
+
+from pydantic import Field
+
+from ancf.inputs import OnBody, Point
+
+Quantity: TypeAlias = Literal["position", "displacement", "velocity", "normal", "membrane_strain", "curvature"]
+
+
+class Meaning(NamedTuple):
+    """What the values of a quantity are."""
+
+    unit: str
+    components: tuple[str, ...]
+
+
+_VECTOR = ("x", "y", "z")
+_SYMMETRIC = ("xx", "yy", "xy")
+
+QUANTITIES: dict[Quantity, Meaning] = {
+    "position": Meaning("m", _VECTOR),
+    "displacement": Meaning("m", _VECTOR),
+    "velocity": Meaning("m/s", _VECTOR),
+    "normal": Meaning("", _VECTOR),
+    "membrane_strain": Meaning("", _SYMMETRIC),
+    "curvature": Meaning("1/m", _SYMMETRIC),
+}
+
+
+class Probe(OnBody):
+    """A quantity to record at a material point.
+
+    Parameters
+    ----------
+    name : str
+        What the record is called in the result.
+    body : str, optional
+        Its name; may be left out where the model has just one.
+    at : pair of float
+        Natural coordinates of the material point.
+    quantity : str, default "position"
+        "position" or "displacement", m, "velocity", m/s, or the unit "normal", components x, y, z;
+        "membrane_strain" or "curvature", 1/m, components xx, yy, xy in the natural coordinates, the last doubled.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible.
+
+    Examples
+    --------
+    >>> corner = Probe(name="A", at=(0.3, 0.3))
+    """
+
+    name: Annotated[str, Field(min_length=1)]
+    at: Point
+    quantity: Quantity = "position"

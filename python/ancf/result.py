@@ -1,0 +1,223 @@
+"""Results: the states of a run, what was recorded of them, and how the run went."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Literal, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ancf import _core
+from ancf.model import Model
+from ancf.probes import Probe, Quantity
+from ancf.run import Dynamic, Static
+
+if TYPE_CHECKING:
+    import os
+
+    from matplotlib.figure import Figure
+
+FloatArray = NDArray[np.float64]
+Status = Literal["ok", "failed", "interrupted"]
+
+
+@dataclass(frozen=True)
+class Record:
+    """What a probe recorded.
+
+    Parameters
+    ----------
+    t : ndarray, shape (states,)
+        Times, s, or load factors.
+    value : ndarray, shape (states, components)
+        In the unit of the quantity, see `Probe`.
+    """
+
+    t: FloatArray
+    value: FloatArray
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Energies.
+
+    Parameters
+    ----------
+    t : ndarray, shape (states,)
+        Times, s, or load factors.
+    kinetic, membrane, bending : ndarray, shape (states,)
+        J.
+    loads : ndarray, shape (states,)
+        The work that the loads have done, J.
+    """
+
+    t: FloatArray
+    kinetic: FloatArray
+    membrane: FloatArray
+    bending: FloatArray
+    loads: FloatArray
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run leaves: every state up to its end, and how it ended.
+
+    Parameters
+    ----------
+    model : Model
+        What was run.
+    run : Static or Dynamic
+        How it was run.
+    status : {"ok", "failed", "interrupted"}
+        How it ended.
+    reason, advice : str
+        Why it did not end well and what to try; empty if it did.
+    reached : float
+        The last time, s, or load factor.
+    t : ndarray, shape (states,)
+        Times, s, or load factors; the first is 0, the state at the start.
+    q, v, a : ndarray, shape (states, n)
+        Nodal coordinates (order: `Model.nodal_coordinates`) and their first and second derivatives in time; in
+        statics v and a are zero.
+    probes : dict of str to Record
+        What each probe recorded.
+    energy : Energy
+        Energies and the work of the loads.
+    momentum, angular_momentum : ndarray, shape (states, 3)
+        kg m/s, and kg m2/s about the origin.
+    negative_pivots : ndarray of int, shape (states,)
+        Negative eigenvalues of the tangent, 0 where the equilibrium is stable; -1 where they were not counted.
+    counts : dict of str to int
+        elements, dofs, steps, rejected, iterations, factorizations.
+    seconds : dict of str to float
+        total, setup, assembly, factorization, solve.
+    """
+
+    model: Model = field(repr=False)
+    run: Static | Dynamic
+    status: Status
+    reason: str
+    advice: str
+    reached: float
+    t: FloatArray = field(repr=False)
+    q: FloatArray = field(repr=False)
+    v: FloatArray = field(repr=False)
+    a: FloatArray = field(repr=False)
+    probes: dict[str, Record] = field(repr=False)
+    energy: Energy = field(repr=False)
+    momentum: FloatArray = field(repr=False)
+    angular_momentum: FloatArray = field(repr=False)
+    negative_pivots: NDArray[np.int64] = field(repr=False)
+    counts: dict[str, int]
+    seconds: dict[str, float]
+
+    @classmethod
+    def of(cls, model: Model, run: Static | Dynamic, core: _core.Run) -> Result:
+        """Make the result of what the compiled module returned."""
+
+        def record(probe: Probe) -> Record:
+            value = model.evaluate(probe.body, [probe.at], probe.quantity, core.q, core.v)
+            return Record(core.t, value[:, 0, :])
+
+        return cls(
+            model=model,
+            run=run,
+            status=cast(Status, core.status),
+            reason=core.reason,
+            advice=core.advice,
+            reached=core.reached,
+            t=core.t,
+            q=core.q,
+            v=core.v,
+            a=core.a,
+            probes={probe.name: record(probe) for probe in model.probes},
+            energy=Energy(core.t, **core.energy),
+            momentum=core.momentum,
+            angular_momentum=core.angular_momentum,
+            negative_pivots=core.negative_pivots,
+            counts=core.counts,
+            seconds=core.seconds,
+        )
+
+    def evaluate(self, body: str, points: ArrayLike, quantity: Quantity) -> FloatArray:
+        """Return a quantity at material points in every state.
+
+        Parameters
+        ----------
+        body : str
+            Its name.
+        points : array_like, shape (points, 2)
+            Natural coordinates.
+        quantity : str
+            One of those of `Probe`.
+
+        Returns
+        -------
+        ndarray, shape (states, points, components)
+            In the unit of the quantity.
+
+        Raises
+        ------
+        InputError
+            If there is no such body or quantity, or a point is outside.
+        """
+        return self.model.evaluate(body, points, quantity, self.q, self.v)
+
+    def positions(self, body: str, points: ArrayLike) -> FloatArray:
+        """Return the positions of material points in every state.
+
+        Parameters
+        ----------
+        body : str
+            Its name.
+        points : array_like, shape (points, 2)
+            Natural coordinates.
+
+        Returns
+        -------
+        ndarray, shape (states, points, 3)
+            m.
+
+        Raises
+        ------
+        InputError
+            If there is no such body or a point is outside.
+        """
+        return self.evaluate(body, points, "position")
+
+    def plot(self, title: str = "") -> Figure:
+        """Draw the bodies at rest and deformed, and the records of the probes.
+
+        Parameters
+        ----------
+        title : str, optional
+            Written above.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            To be saved with its ``savefig``.
+        """
+        from ancf.plot import plot  # noqa: PLC0415  Matplotlib takes longer to import than most scenes to run.
+
+        return plot(self, title)
+
+    def animate(self, path: str | os.PathLike[str], title: str = "") -> None:
+        """Write the motion as a film.
+
+        Parameters
+        ----------
+        path : str or path
+            The file; ".gif" or, with ffmpeg, ".mp4".
+        title : str, optional
+            Written above.
+
+        Raises
+        ------
+        InputError
+            If the file has another ending, or ffmpeg is needed and missing.
+        """
+        from ancf.film import animate  # noqa: PLC0415  As above.
+
+        animate(self, path, title)

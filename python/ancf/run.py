@@ -1,0 +1,246 @@
+"""Kinds of run: statics and motion, with their options."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import Annotated, Any, ClassVar, Literal, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, PlainValidator, model_validator
+
+from ancf import _core
+from ancf.errors import InputError, Mistake, Mistakes, show
+from ancf.inputs import Input, Positive, PositiveInt, table
+from ancf.loads import Gravity, History
+from ancf.model import Model
+
+_INTERVALS = 100
+
+ProgressCall: TypeAlias = Callable[[float], Any] | None
+
+
+class _Run(Input, ABC):
+    kind: ClassVar[str]
+    parameter: ClassVar[str]
+    unit: ClassVar[str]
+    history: ClassVar[History]
+
+    newton: Literal["mip", "plain"] = "mip"
+    tolerance: Positive = 1e-8
+    max_iterations: PositiveInt = 30
+
+    @property
+    @abstractmethod
+    def end(self) -> float:
+        """Where the run ends: the time in s, or the load factor."""
+
+    @abstractmethod
+    def check(self, model: Model) -> None:
+        """Raise `InputError` if the model cannot be run in this way."""
+
+    @abstractmethod
+    def start(self, core: _core.Model, threads: int | None, progress: ProgressCall) -> _core.Run:
+        """Run the compiled model."""
+
+
+class Static(_Run):
+    """Equilibrium under loads that grow: load factors reached in adaptive steps.
+
+    Every result starts with the state without loads, load factor 0.
+
+    Parameters
+    ----------
+    load_factors : sequence of float, default (1.0,)
+        Where to record a state, in the order in which they are reached; each differs from the one before, the first
+        from 0.
+    path : {"load"}, default "load"
+        How the path is followed: by the load factor.
+    newton : {"mip", "plain"}, default "mip"
+        The iteration: mixed integration points, Magisano, Leonetti and Garcea (2017), or plain.
+    tolerance : float, default 1e-8
+        Of the last correction, relative to the size of the model.
+    max_iterations : int, default 30
+        A step that needs more is cut.
+    first_step : float, optional
+        Of the load factor; the first load factor if left out.
+    min_step : float, default 1e-5
+        The run fails if a smaller step would be needed.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible.
+    """
+
+    kind: ClassVar[str] = "static"
+    parameter: ClassVar[str] = "load factor"
+    unit: ClassVar[str] = ""
+    history: ClassVar[History] = "ramp"
+
+    load_factors: Sequence[float] = (1.0,)
+    path: Literal["load"] = "load"
+    first_step: Positive | None = None
+    min_step: Positive = 1e-5
+
+    @model_validator(mode="after")
+    def _change(self) -> Self:
+        if not self.load_factors or any(after == before for before, after in pairwise((0.0, *self.load_factors))):
+            message = "each must differ from the one before, and the first from 0"
+            raise InputError(Mistake(("load_factors",), message, show(self.load_factors)))
+        return self
+
+    @property
+    def end(self) -> float:
+        """The last load factor."""
+        return self.load_factors[-1]
+
+    def check(self, model: Model) -> None:
+        """Raise `InputError` if a body can move rigidly, or has no mass where gravity acts."""
+        mistakes = Mistakes()
+        for body, motion in model.rigid_motions():
+            mistakes.add(("supports",), f"the body {body} can still move: {motion}; in statics supports must hold it")
+        if any(isinstance(load, Gravity) for load in model.loads):
+            _check_density(model, mistakes, "where gravity acts")
+        mistakes.check()
+
+    def start(self, core: _core.Model, threads: int | None, progress: ProgressCall) -> _core.Run:
+        """Run the compiled model."""
+        return _core.solve_static(
+            core,
+            load_factors=self.load_factors,
+            newton=self.newton,
+            tolerance=self.tolerance,
+            max_iterations=self.max_iterations,
+            first_step=self.first_step,
+            min_step=self.min_step,
+            threads=threads,
+            progress=progress,
+        )
+
+
+class Dynamic(_Run):
+    """Motion from rest, or from given velocities, in fixed steps.
+
+    Every result starts with the state at t = 0. Without `outputs` and `every` it has up to 100 more, equally spaced.
+
+    Parameters
+    ----------
+    until : float
+        s, greater than 0.
+    step : float
+        s, greater than 0.
+    method : {"hht", "generalized_alpha"}, default "hht"
+        HHT-alpha or generalized-alpha.
+    alpha : float, optional
+        Of "hht", from -1/3 to 0; -0.05 if left out.
+    rho_inf : float, optional
+        Of "generalized_alpha", the spectral radius at infinite frequency, from 0 to 1; 0.9 if left out.
+    outputs : sequence of float, optional
+        Times of the states to record, s; they increase and lie in [0, until].
+    every : float, optional
+        Instead of `outputs`, the time between states, s; the last is at `until`.
+    newton : {"mip", "plain"}, default "mip"
+        The iteration: mixed integration points, Magisano, Leonetti and Garcea (2017), or plain.
+    tolerance : float, default 1e-8
+        Of the last correction, relative to the size of the model.
+    max_iterations : int, default 30
+        The run fails if a step needs more.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible.
+    """
+
+    kind: ClassVar[str] = "dynamic"
+    parameter: ClassVar[str] = "t"
+    unit: ClassVar[str] = "s"
+    history: ClassVar[History] = "constant"
+
+    until: Positive
+    step: Positive
+    method: Literal["hht", "generalized_alpha"] = "hht"
+    alpha: Annotated[float, Field(ge=-1 / 3, le=0)] | None = None
+    rho_inf: Annotated[float, Field(ge=0, le=1)] | None = None
+    outputs: Sequence[float] | None = None
+    every: Positive | None = None
+
+    @model_validator(mode="after")
+    def _agree(self) -> Self:
+        mistakes = Mistakes()
+        if self.step > self.until:
+            mistakes.add(("step",), "must not be greater than until", self.step)
+        for name, method in (("alpha", "hht"), ("rho_inf", "generalized_alpha")):
+            if getattr(self, name) is not None and self.method != method:
+                mistakes.add((name,), f'is for method = "{method}" only', getattr(self, name))
+        if self.outputs is not None and self.every is not None:
+            mistakes.add(("every",), "give either every or outputs", self.every)
+        if self.outputs is not None:
+            increase = all(before < after for before, after in pairwise(self.outputs))
+            if not increase or not all(0 <= time <= self.until for time in self.outputs):
+                mistakes.add(("outputs",), f"must increase and lie in [0, {self.until}]", self.outputs)
+        mistakes.check()
+        return self
+
+    @property
+    def end(self) -> float:
+        """The last time, s."""
+        return self.until
+
+    def times(self) -> list[float]:
+        """Return the times of the states to record, the first 0, s."""
+        if self.outputs is not None:
+            return [0.0, *(time for time in self.outputs if time > 0)]
+        if self.every is None:
+            intervals = max(1, min(_INTERVALS, round(self.until / self.step)))
+            return [self.until * (index / intervals) for index in range(intervals + 1)]
+        whole = int(self.until / self.every * (1 - 1e-12))
+        return [*(self.every * index for index in range(whole + 1)), self.until]
+
+    def check(self, model: Model) -> None:
+        """Raise `InputError` if a body has no mass or a load is made for statics."""
+        mistakes = Mistakes()
+        _check_density(model, mistakes, "in motion")
+        for index, load in enumerate(model.loads):
+            if load.history == "ramp":
+                allowed = "is for statics; in motion allowed are constant and [[t, factor], ...]"
+                mistakes.add(("loads", index, "history"), allowed, load.history)
+        mistakes.check()
+
+    def start(
+        self,
+        core: _core.Model,
+        threads: int | None,
+        progress: ProgressCall,
+        velocity: NDArray[np.float64] | None = None,
+    ) -> _core.Run:
+        """Run the compiled model."""
+        hht = self.method == "hht"
+        return _core.simulate(
+            core,
+            until=self.until,
+            step=self.step,
+            method=self.method,
+            alpha=(-0.05 if self.alpha is None else self.alpha) if hht else None,
+            rho_inf=None if hht else (0.9 if self.rho_inf is None else self.rho_inf),
+            outputs=self.times(),
+            velocity=velocity,
+            newton=self.newton,
+            tolerance=self.tolerance,
+            max_iterations=self.max_iterations,
+            threads=threads,
+            progress=progress,
+        )
+
+
+def _check_density(model: Model, mistakes: Mistakes, where: str) -> None:
+    for name, body in model.bodies.items():
+        if body.material.density == 0:
+            path = ("bodies", name, "material", "density")
+            mistakes.add(path, f"must be greater than 0 {where}", body.material.density)
+
+
+Run: TypeAlias = Annotated[Static | Dynamic, PlainValidator(table(Static, Dynamic, key="kind"))]

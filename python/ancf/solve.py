@@ -1,0 +1,182 @@
+"""Running a model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ancf import _core
+from ancf.errors import InputError, Interrupted, Mistake, SolveError, from_core, show
+from ancf.model import Model
+from ancf.progress import Progress, meter
+from ancf.result import Result
+from ancf.run import Dynamic, ProgressCall, Static
+
+_Start = Callable[[_core.Model, int | None, ProgressCall], _core.Run]
+
+
+def solve_static(
+    model: Model,
+    *,
+    load_factors: Sequence[float] = (1.0,),
+    newton: Literal["mip", "plain"] = "mip",
+    tolerance: float = 1e-8,
+    max_iterations: int = 30,
+    first_step: float | None = None,
+    min_step: float = 1e-5,
+    threads: int | None = None,
+    progress: Progress = None,
+    throw: bool = True,
+) -> Result:
+    """Find the equilibrium of a model under loads that grow in adaptive steps.
+
+    Parameters
+    ----------
+    model : Model
+        What to load.
+    load_factors, newton, tolerance, max_iterations, first_step, min_step : optional
+        As in `Static`.
+    threads : int, optional
+        How many; all if left out. The result does not depend on it.
+    progress : bool or callable, optional
+        True shows a bar on standard error if that is a terminal; a callable is called with the load factor reached.
+    throw : bool, default True
+        Raise an error if the run fails. Otherwise see `Result.status`.
+
+    Returns
+    -------
+    Result
+        The state without loads, then one for each load factor.
+
+    Raises
+    ------
+    InputError
+        If an argument is wrong, or the model can move rigidly.
+    SolveError
+        If the run fails; `SolveError.result` holds what it had.
+    Interrupted
+        On Ctrl-C; `Interrupted.result` holds what it had.
+    """
+    run = Static(
+        load_factors=load_factors,
+        newton=newton,
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+        first_step=first_step,
+        min_step=min_step,
+    )
+    return solve(model, run, threads=threads, progress=progress, throw=throw)
+
+
+def simulate(
+    model: Model,
+    *,
+    until: float,
+    step: float,
+    method: Literal["hht", "generalized_alpha"] = "hht",
+    alpha: float | None = None,
+    rho_inf: float | None = None,
+    outputs: Sequence[float] | None = None,
+    every: float | None = None,
+    velocity: ArrayLike | None = None,
+    newton: Literal["mip", "plain"] = "mip",
+    tolerance: float = 1e-8,
+    max_iterations: int = 30,
+    threads: int | None = None,
+    progress: Progress = None,
+    throw: bool = True,
+) -> Result:
+    """Find the motion of a model.
+
+    Parameters
+    ----------
+    model : Model
+        What moves.
+    until, step, method, alpha, rho_inf, outputs, every, newton, tolerance, max_iterations : optional
+        As in `Dynamic`; the first two are needed.
+    velocity : array_like, shape (n,), optional
+        Velocities of the nodal coordinates at t = 0, in the order of `Model.nodal_coordinates`; at rest if left out.
+    threads : int, optional
+        How many; all if left out. The result does not depend on it.
+    progress : bool or callable, optional
+        True shows a bar on standard error if that is a terminal; a callable is called with the time reached, s.
+    throw : bool, default True
+        Raise an error if the run fails. Otherwise see `Result.status`.
+
+    Returns
+    -------
+    Result
+        The state at t = 0, then one for each output time.
+
+    Raises
+    ------
+    InputError
+        If an argument is wrong.
+    SolveError
+        If the run fails; `SolveError.result` holds what it had.
+    Interrupted
+        On Ctrl-C; `Interrupted.result` holds what it had.
+    """
+    run = Dynamic(
+        until=until,
+        step=step,
+        method=method,
+        alpha=alpha,
+        rho_inf=rho_inf,
+        outputs=outputs,
+        every=every,
+        newton=newton,
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+    )
+    start = None if velocity is None else partial(run.start, velocity=_check_velocity(model, velocity))
+    return solve(model, run, threads=threads, progress=progress, throw=throw, start=start)
+
+
+def solve(
+    model: Model,
+    run: Static | Dynamic,
+    *,
+    threads: int | None = None,
+    progress: Progress = None,
+    throw: bool = True,
+    start: _Start | None = None,
+) -> Result:
+    """Run a model in any way; what `solve_static`, `simulate` and scenes have in common."""
+    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
+        raise InputError(Mistake(("threads",), "must be a whole number greater than 0", show(threads)))
+    run.check(model)
+    core = model.assemble(run.history)
+    with meter(progress, run.end, run.unit) as call, from_core():
+        outcome = (start or run.start)(core, threads, call)
+        if call and outcome.exception is None:
+            call(outcome.reached)
+    result = Result.of(model, run, outcome)
+    place = f"{run.parameter} = {result.reached:.6g} {run.unit}".rstrip()
+    if outcome.exception is not None:
+        raise _stopped(outcome.exception, place, result)
+    if throw and result.status == "failed":
+        raise SolveError(f"the run failed at {place}: {result.reason}. Try: {result.advice}", result)
+    return result
+
+
+def _stopped(cause: BaseException, place: str, result: Result) -> BaseException:
+    if isinstance(cause, KeyboardInterrupt):
+        stopped = Interrupted(f"the run was interrupted at {place}", result)
+        stopped.__cause__ = cause
+        return stopped
+    cause.add_note(f"It stopped the run at {place}; the attribute `result` holds the states up to there.")
+    cause.__dict__["result"] = result
+    return cause
+
+
+def _check_velocity(model: Model, velocity: ArrayLike) -> Any:
+    values = np.asarray(velocity, dtype=np.float64)
+    shape = model.nodal_coordinates().shape
+    if values.shape != shape or not np.isfinite(values).all():
+        raise InputError(Mistake(("velocity",), f"must be finite and have the shape {show(shape)}", show(values.shape)))
+    return values

@@ -1,0 +1,47 @@
+"""What several tests need."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import ancf
+
+
+@pytest.fixture
+def scenes() -> Path:
+    """The folder of scene files."""
+    return Path(__file__).parent / "scenes"
+
+
+@pytest.fixture
+def edit(scenes: Path, tmp_path: Path) -> Callable[..., Path]:
+    """Copy a scene file with some of its text replaced."""
+
+    def copy(name: str, *replacements: tuple[str, str]) -> Path:
+        text = (scenes / name).read_text(encoding="utf-8")
+        for old, new in replacements:
+            assert text.count(old) == 1
+            text = text.replace(old, new)
+        path = tmp_path / "scene.toml"
+        path.write_text(text, encoding="utf-8")
+        return path
+
+    return copy
+
+
+@pytest.fixture
+def rubber() -> ancf.Material:
+    return ancf.Material(E=1e5, nu=0.3, density=7810.0)
+
+
+@pytest.fixture
+def pendulum(rubber: ancf.Material) -> ancf.Model:
+    """The scene pendulum.toml in Python."""
+    plate = ancf.Rectangle(size=(0.3, 0.3), divisions=(2, 2), thickness=0.01, material=rubber, membrane="full")
+    return ancf.Model(
+        bodies={"plate": plate},
+        supports=[ancf.Support(at="corner:x0y0", fix=["r"])],
+        loads=[ancf.Gravity(acceleration=(0.0, 0.0, -9.81))],
+        probes=[ancf.Probe(name="A", at=(0.3, 0.3))],
+    )

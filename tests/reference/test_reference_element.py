@@ -1,0 +1,187 @@
+"""Energy, force, tangent and mass of `thin36`."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from ancf.reference import Material, Model, RectangleMesh, Thin36
+from ancf.reference.arrays import FloatArray
+from ancf.reference.quadrature import gauss, square
+from ancf.reference.shape import THIN36
+from ancf.reference.thin36 import CurvatureKind, MembraneRule, projection
+
+MEMBRANES: list[MembraneRule] = ["full", "lobatto", "projected"]
+CURVATURES: list[CurvatureKind] = ["paper", "koiter"]
+options = pytest.mark.parametrize(("membrane", "curvature"), list(product(MEMBRANES, CURVATURES)))
+
+
+def plate(membrane: MembraneRule = "projected", curvature: CurvatureKind = "paper", thickness: float = 0.3) -> Model:
+    mesh = RectangleMesh((1.0, 1.4), (1, 2))
+    return Model(mesh, thickness=thickness, E=2.0, nu=0.3, density=3.0, membrane=membrane, curvature=curvature)
+
+
+def moved(q: FloatArray, seed: int, deformation: float) -> FloatArray:
+    """Random rotation and translation, and a random change of all coordinates."""
+    rng = np.random.default_rng(seed)
+    vectors = q.reshape(-1, 3) @ Rotation.random(rng=rng).as_matrix().T
+    vectors[::3] += rng.normal(size=3)
+    return (vectors + deformation * rng.normal(size=vectors.shape)).ravel()
+
+
+def test_energy_written_out() -> None:
+    """(25) to (34) of the paper, point by point, for full quadrature and the paper's curvature."""
+    model = plate("full", thickness=0.1)
+    q = moved(model.reference, 0, 0.2)
+    E, nu, h = 2.0, 0.3, 0.1
+    membrane = bending = 0.0
+    nodal = q.reshape(-1, 3, 3)
+    for cell in model.mesh.cells:
+        e = nodal[cell].reshape(12, 3)
+        for n in (4, 3):
+            rule = square(gauss(n))
+            for weight, T in zip(rule.weights * 1.0 * 0.7, THIN36.table(rule.points, 1.0, 0.7), strict=True):
+                r_x, r_y, r_xx, r_yy, r_xy = T[1:] @ e
+                if n == 4:
+                    xx, yy, xy = (r_x @ r_x - 1) / 2, (r_y @ r_y - 1) / 2, r_x @ r_y
+                else:
+                    normal = np.cross(r_x, r_y)
+                    xx, yy, xy = (b @ normal / np.linalg.norm(normal) ** 3 for b in (r_xx, r_yy, 2 * r_xy))
+                density = E / (1 - nu**2) * (xx**2 + yy**2 + 2 * nu * xx * yy + (1 - nu) / 2 * xy**2) / 2
+                if n == 4:
+                    membrane += weight * h * density
+                else:
+                    bending += weight * h**3 / 12 * density
+    np.testing.assert_allclose(model.energy(q), (membrane, bending), rtol=1e-13)
+
+
+@options
+def test_rigid_motion(membrane: MembraneRule, curvature: CurvatureKind) -> None:
+    model = plate(membrane, curvature)
+    q = moved(model.reference, 1, 0.0)
+    np.testing.assert_allclose(model.energy(q), 0, atol=1e-28)
+    np.testing.assert_allclose(model.internal_force(q), 0, atol=1e-14)
+
+
+@options
+def test_force_and_tangent(membrane: MembraneRule, curvature: CurvatureKind) -> None:
+    model = plate(membrane, curvature)
+    q, h = moved(model.reference, 2, 0.1), 1e-5
+    force, K = model.internal_force(q), model.tangent(q).toarray()
+    for i in range(0, model.coordinates, 4):
+        step = np.zeros_like(q)
+        step[i] = h
+        energy = (sum(model.energy(q + step)) - sum(model.energy(q - step))) / (2 * h)
+        assert force[i] == pytest.approx(energy, abs=1e-8 * np.abs(force).max())
+        column = (model.internal_force(q + step) - model.internal_force(q - step)) / (2 * h)
+        np.testing.assert_allclose(K[:, i], column, atol=1e-8 * np.abs(K).max())
+    np.testing.assert_allclose(K, K.T, atol=1e-14 * np.abs(K).max())
+
+
+@options
+def test_six_zero_modes(membrane: MembraneRule, curvature: CurvatureKind) -> None:
+    """Of a free square with thickness / side 0.3, one element and four."""
+    for n in (1, 2):
+        mesh = RectangleMesh((1.0, 1.0), (n, n))
+        model = Model(mesh, thickness=0.3, E=1.0, nu=0.3, density=1.0, membrane=membrane, curvature=curvature)
+        eigenvalues = np.linalg.eigvalsh(model.tangent(model.reference).toarray())
+        assert np.sum(np.abs(eigenvalues) < 1e-10 * eigenvalues[-1]) == 6
+        assert eigenvalues[0] > -1e-14 * eigenvalues[-1]
+
+
+def test_extrapolated_stress_is_of_second_order() -> None:
+    model = plate()
+    q = moved(model.reference, 3, 0.1)
+    dq = np.random.default_rng(4).normal(size=q.shape)
+    errors = []
+    for size in (1e-3, 1e-4):
+        pairs = zip(model.extrapolated_stress(q, size * dq), model.stress(q + size * dq), strict=True)
+        errors.append(max(np.abs(a - b).max() for a, b in pairs))
+    assert errors[0] / errors[1] == pytest.approx(100, rel=0.05)
+
+
+def test_mass() -> None:
+    """Mass, first and second moments of a rectangle a x b about its corner: m, m a/2, m (a2 + b2)/3."""
+    model = plate()
+    m = 3.0 * 0.3 * 1.0 * 1.4
+    v = np.zeros((6, 3, 3))
+    v[:, 0, 2] = 1
+    np.testing.assert_allclose(model.momentum(v.ravel()), [0, 0, m], atol=1e-14)
+    np.testing.assert_allclose(model.angular_momentum(model.reference, v.ravel()), [m * 0.7, -m * 0.5, 0], atol=1e-14)
+    moment = model.reference @ (model.mass @ model.reference)
+    assert moment == pytest.approx(m * (1.0**2 + 1.4**2) / 3, rel=1e-14)
+
+
+def test_projection() -> None:
+    Pi = projection()
+    np.testing.assert_allclose(Pi @ Pi, Pi, atol=1e-14)
+    assert np.linalg.matrix_rank(Pi) == 20
+    x, y = 2 * square(gauss(4)).points.T - 1
+    kept = np.stack([x * y**3, x**3 * y, x * y], axis=1)
+    np.testing.assert_allclose(Pi @ kept.ravel(), kept.ravel(), atol=1e-14)
+    lost = np.stack([x**2, y**2, x**2], axis=1)
+    np.testing.assert_allclose(Pi @ lost.ravel(), np.full(48, 1 / 3), atol=1e-14)
+
+
+@options
+def test_any_parameters_of_the_same_plate(membrane: MembraneRule, curvature: CurvatureKind) -> None:
+    """Parameters that are not lengths: the gradients change, the energy and the mass do not."""
+    model = plate(membrane, curvature)
+    q = moved(model.reference, 5, 0.1)
+    scale = np.array([1.0, 2.5, 0.4])[:, None]
+    mesh = RectangleMesh((1.0 / 2.5, 1.4 / 0.4), (1, 2))
+    rescaled = Model(
+        mesh,
+        thickness=0.3,
+        E=2.0,
+        nu=0.3,
+        density=3.0,
+        membrane=membrane,
+        curvature=curvature,
+        reference=(model.reference.reshape(-1, 3, 3) * scale).ravel(),
+    )
+    p = (q.reshape(-1, 3, 3) * scale).ravel()
+    np.testing.assert_allclose(rescaled.energy(p), model.energy(q), rtol=1e-12)
+    assert p @ (rescaled.mass @ p) == pytest.approx(q @ (model.mass @ q), rel=1e-12)
+
+
+def test_stretched_parallelogram() -> None:
+    """An oblique reference under E = diag(e, 0) in space has the energy E h A e**2 / (2 (1 - nu**2))."""
+    edges = np.array([[1.0, 0.2, 0.0], [0.5, 0.8, 0.0]])
+    corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) @ edges
+    e_0 = np.stack([corners, *(np.tile(edge, (4, 1)) for edge in edges)], axis=1).reshape(1, 12, 3)
+    element = Thin36(1.0, 1.0, e_0, 0.1, Material(2.0, 0.3, 1.0), "full")
+    stretch, area = 1.1, 1.0 * 0.8 - 0.2 * 0.5
+    strain = (stretch**2 - 1) / 2
+    energy = element.membrane_energy().energy(e_0 * [stretch, 1, 1])
+    np.testing.assert_allclose(energy, 2.0 * 0.1 * area * strain**2 / (2 * (1 - 0.3**2)), rtol=1e-13)
+    assert element.mass()[0, ::3, ::3].sum() == pytest.approx(0.1 * area, rel=1e-13)
+
+
+def test_unrolled_cylinder() -> None:
+    """A quarter cylinder of radius R, flattened, has the energy E h**3 A / (24 (1 - nu**2) R**2)."""
+    R, height, h, n = 2.0, 1.0, 0.01, 8
+    mesh = RectangleMesh((np.pi / 2, height), (n, 1))
+    angle, z = mesh.nodes.T
+    zero, one = np.zeros_like(z), np.ones_like(z)
+    curved = np.stack(
+        [
+            np.stack([R * np.cos(angle), R * np.sin(angle), z], axis=1),
+            np.stack([-R * np.sin(angle), R * np.cos(angle), zero], axis=1),
+            np.stack([zero, zero, one], axis=1),
+        ],
+        axis=1,
+    )
+    flat = np.stack(
+        [
+            np.stack([R * angle, z, zero], axis=1),
+            np.stack([R * one, zero, zero], axis=1),
+            np.stack([zero, one, zero], axis=1),
+        ],
+        axis=1,
+    )
+    model = Model(mesh, thickness=h, E=2.0, nu=0.3, density=1.0, curvature="koiter", reference=curved.ravel())
+    _, bending = model.energy(flat.ravel())
+    area = R * np.pi / 2 * height
+    assert bending == pytest.approx(2.0 * h**3 * area / (24 * (1 - 0.3**2) * R**2), rel=2e-3)

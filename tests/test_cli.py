@@ -1,0 +1,167 @@
+"""The command line: files, exit status, interruption."""
+
+import dataclasses
+import io
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import ancf
+from ancf.cli import main
+from ancf.output import summarize
+
+Edit = Callable[..., Path]
+
+
+def summary(folder: Path) -> dict[str, Any]:
+    def refuse(name: str) -> None:
+        raise AssertionError(f"{name} is not JSON")
+
+    text = (folder / "summary.json").read_text(encoding="utf-8")
+    found: dict[str, Any] = json.loads(text, parse_constant=refuse)
+    return found
+
+
+def test_run_writes_summary_and_states(scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "some" / "folder"
+    assert main(["run", str(scenes / "pendulum.toml"), "-o", str(folder), "--threads", "1"]) == 0
+    told = capsys.readouterr()
+    assert "Small pendulum: ok, t = 0.05 s" in told.out
+    assert told.err == ""  # no bar unless it is a terminal
+    found = summary(folder)
+    assert list(found) == [
+        "title", "status", "reached", "reason", "advice", "counts", "seconds", "probes", "energy",
+    ]  # fmt: skip
+    assert (found["title"], found["status"], found["reason"]) == ("Small pendulum", "ok", "")
+    assert found["reached"] == pytest.approx(0.05)
+    assert found["counts"]["elements"] == 4
+    assert found["counts"]["dofs"] == 78
+    assert set(found["counts"]) == {"elements", "dofs", "steps", "rejected", "iterations", "factorizations"}
+    assert set(found["seconds"]) == {"total", "setup", "assembly", "factorization", "solve"}
+    assert found["probes"]["A"]["t"] == pytest.approx([0.0, 0.025, 0.05])
+    assert found["probes"]["A"]["value"][0] == pytest.approx([0.3, 0.3, 0.0])
+    assert set(found["energy"]) == {"t", "kinetic", "membrane", "bending", "loads"}
+    with np.load(folder / "result.npz") as states:
+        assert states["q"].shape == states["v"].shape == states["a"].shape == (3, 81)
+        np.testing.assert_allclose(states["t"], [0.0, 0.025, 0.05])
+    assert sorted(path.name for path in folder.iterdir()) == ["result.npz", "summary.json"]
+
+
+def test_the_summary_has_no_numbers_that_are_not_json(pendulum: ancf.Model) -> None:
+    result = ancf.simulate(pendulum, until=0.01, step=5e-3)
+    energy = dataclasses.replace(result.energy, kinetic=np.array([0.0, np.nan, np.inf]))
+    found = summarize("", dataclasses.replace(result, reached=float("nan"), energy=energy))
+    assert found["reached"] is None
+    assert found["energy"]["kinetic"] == [0.0, None, None]
+
+
+def test_pictures(scenes: Path, tmp_path: Path) -> None:
+    arguments = ["run", str(scenes / "cantilever.toml"), "-o", str(tmp_path), "--plot", "--animate", "--quiet"]
+    assert main(arguments) == 0
+    assert summary(tmp_path)["probes"]["tip"]["t"] == [0.0, 0.5, 1.0]
+    with Image.open(tmp_path / "plate.png") as picture:
+        assert picture.width > 1000
+        colours = np.unique(np.asarray(picture.convert("RGB")).reshape(-1, 3), axis=0)
+        assert len(colours) > 500  # a shaded surface, not an empty frame
+    with Image.open(tmp_path / "motion.gif") as film:
+        assert getattr(film, "n_frames", 1) == 3
+    assert {path.name for path in tmp_path.iterdir()} == {"motion.gif", "plate.png", "result.npz", "summary.json"}
+
+
+def test_a_film_without_ffmpeg(
+    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("matplotlib.animation.FFMpegWriter.isAvailable", lambda: False)
+    folder = tmp_path / "out"
+    assert main(["run", str(scenes / "cantilever.toml"), "-o", str(folder), "--animate", "mp4"]) == 2
+    assert "needs the program ffmpeg" in capsys.readouterr().err
+    assert not folder.exists()
+
+
+def test_an_output_that_is_a_file(scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "out"
+    file.write_text("mine")
+    for folder in (file, file / "below"):
+        assert main(["run", str(scenes / "cantilever.toml"), "-o", str(folder)]) == 2
+        assert f"{folder}: cannot be written to" in capsys.readouterr().err
+    assert file.read_text() == "mine"
+
+
+def test_a_failed_run_is_written(edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = edit("pendulum.toml", ("step = 5e-3", "step = 5e-3\nmax_iterations = 1\ntolerance = 1e-14"))
+    assert main(["run", str(scene), "-o", str(tmp_path / "out"), "--quiet"]) == 3
+    found = summary(tmp_path / "out")
+    assert found["status"] == "failed"
+    assert found["reason"]
+    assert found["advice"]
+    assert len(found["probes"]["A"]["t"]) == len(found["energy"]["t"]) >= 1
+    assert found["advice"] in capsys.readouterr().err
+
+
+def test_an_error_while_writing_leaves_the_earlier_run(
+    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["run", str(scenes / "cantilever.toml"), "-o", str(tmp_path), "--quiet"]
+    assert main(arguments) == 0
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def full(file: io.BufferedWriter, **arrays: object) -> None:
+        file.write(b"half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("numpy.savez_compressed", full)
+    assert main(arguments) == 1
+    assert "No space left" in capsys.readouterr().err
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_hinge_alone_holds_nothing_in_statics(edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = edit("cantilever.toml", ("clamp = true", 'fix = ["r"]'))
+    assert main(["run", str(scene), "-o", str(tmp_path / "out"), "--plot", "--animate"]) == 2
+    assert "can still move: rotation about y" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interruption_keeps_the_results(edit: Edit, tmp_path: Path, number: signal.Signals) -> None:
+    scene = edit("pendulum.toml", ("until = 0.05", "until = 500"), ("outputs = [0.025, 0.05]", "every = 0.5"))
+    folder = tmp_path / "out"
+    command = [sys.executable, "-m", "ancf", "run", str(scene), "-o", str(folder)]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment) as run:
+        while not folder.exists() and run.poll() is None:
+            time.sleep(0.02)
+        time.sleep(0.3)
+        run.send_signal(number)
+        _, told = run.communicate(timeout=30)
+    assert run.returncode == 130
+    assert "interrupted at t =" in told
+    found = summary(folder)
+    assert found["status"] == "interrupted"
+    assert found["reached"] < 500
+    assert (folder / "result.npz").exists()
+
+
+def test_info(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["info"]) == 0
+    lines = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())
+    assert lines["ancf"] == ancf.__version__
+    assert lines["numpy"] == np.__version__
+
+
+@pytest.mark.parametrize("arguments", [[], ["run"], ["run", "x.toml", "-o", "out", "--threads", "0"], ["walk"]])
+def test_wrong_arguments(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    assert "usage: ancf" in capsys.readouterr().err
