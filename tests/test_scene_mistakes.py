@@ -57,8 +57,8 @@ CANTILEVER = [
     (
         '[[support]]\nat = "edge:x0"\nclamp = true',
         "",
-        "support: are missing; in statics they must hold the body plate",
-        "translation along x",
+        "support: the body plate can still move: translation along x; in statics supports",
+        "rotation about z",
     ),
     ("clamp = true", "clamp = true\nfix = ['r']", "support.0.fix: give either", ""),
     ('at = "edge:x1"', 'at = "corner:x1y0"', 'load.0.at = "corner:x1y0": allowed are edge:x0, edge:x1', ""),
