@@ -110,7 +110,7 @@ class Model:
 
     def add_pressure(self, p: float, history: History = "constant") -> None:
         """Add a pressure (Pa) along the current normal."""
-        self._add(self.mesh.on_area(square(gauss(4))), pressure(p), True, history)
+        self._add(self.mesh.on_area(square(gauss(5))), pressure(p), True, history)
 
     def energy(self, q: FloatArray) -> tuple[float, float]:
         """Membrane and bending energy, J."""

@@ -38,7 +38,7 @@ impl Follower {
     /// A pressure on all elements.
     pub fn pressure(block: usize, elements: &dyn ElementBlock, grid: &Grid, pressure: f64, history: History) -> Self {
         let [l, w] = grid.element_sides();
-        let points = Rule::Gauss(4).square().into_iter().map(|(at, weight)| Point::new(elements, at, weight * l * w));
+        let points = Rule::Gauss(5).square().into_iter().map(|(at, weight)| Point::new(elements, at, weight * l * w));
         let loaded = vec![true; elements.elements()];
         Self { block, history, kind: Kind::Pressure(pressure), loaded, points: points.collect() }
     }

@@ -1,0 +1,244 @@
+//! Loads: their work, and how followers change with the state.
+//!
+//! Reference: integrals of polynomials; the enclosed volume; the turn of an edge, both from positions.
+//! Goal: the same work on any mesh, with and without supports; forces and stiffness of followers by differences.
+//! Mesh: 1 x 1 to 4 x 3 elements.
+
+use nalgebra::Vector3;
+
+use ancf_core::assembly::System;
+use ancf_core::element::{Membrane, NodalVector};
+use ancf_core::evaluate::{MaterialPoint, Quantity};
+use ancf_core::model::{BodyId, Fix, LoadKind, Model};
+
+use crate::common::{
+    GAUSS, Random, add_constant, add_ramp, derivative, dot, field, largest, line, monomial, moved, pin, plate,
+    random_state, rectangle, system, tangent,
+};
+
+const SIZE: [f64; 2] = [1.2, 0.8];
+
+/// A soft plate, so that differences show what the loads add to the tangent.
+fn soft(divisions: [usize; 2]) -> (Model, BodyId) {
+    rectangle(SIZE, divisions, plate(1e-3, 0.3, 50.0, 0.02, Membrane::Full))
+}
+
+/// The work on displacements `x^i y^j` that vanish at a clamped edge.
+#[test]
+fn work_does_not_depend_on_the_mesh() {
+    let ([a, b], g, f, per_length) = (SIZE, [0.3, -0.2, -9.81], [2.0, -1.0, 0.5], [0.1, 0.2, -0.7]);
+    let point = [0.7, 0.3];
+    let integral = |power: i32, side: f64| side.powi(power + 1) / f64::from(power + 1);
+    for [i, j] in [[2, 0], [3, 0], [2, 1], [3, 1]] {
+        for divisions in [[1, 1], [2, 1], [4, 3]] {
+            for clamped in [false, true] {
+                for (kind, vector, expected) in [
+                    (0, g, 50.0 * 0.02 * integral(i, a) * integral(j, b)),
+                    (1, f, monomial([i, j], (0, 0), point)),
+                    (2, per_length, a.powi(i) * integral(j, b)),
+                    (3, per_length, b.powi(j) * integral(i, a)),
+                ] {
+                    let (mut model, body) = soft(divisions);
+                    if clamped {
+                        model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
+                    }
+                    let load = match kind {
+                        0 => LoadKind::Gravity(vector),
+                        1 => LoadKind::Force { body, point, force: vector },
+                        2 => line(body, "edge:x1", vector),
+                        _ => line(body, "edge:y1", vector),
+                    };
+                    add_constant(&mut model, load);
+                    let direction = [0.4, -1.1, 0.9];
+                    let displacement =
+                        field(&model, body, |orders, at| direction.map(|d| d * monomial([i, j], orders, at)));
+                    let mut force = vec![0.0; displacement.len()];
+                    let system = system(model);
+                    system.external_force(system.model().reference(), 0.0, &mut force);
+                    let work = dot(&force, &displacement);
+                    let expected = expected * dot(&direction, &vector);
+                    let name = format!("load {kind}, x^{i} y^{j}, {divisions:?}, clamped {clamped}");
+                    assert!((work / expected - 1.0).abs() < 1e-13, "{name}: {work}, expected {expected}");
+                }
+            }
+        }
+    }
+}
+
+/// The position at a point of the body.
+fn position(system: &System, body: BodyId, at: [f64; 2], q: &[f64]) -> Vector3<f64> {
+    MaterialPoint::new(system.model(), body, at).unwrap().evaluate(Quantity::Position, q, q).into()
+}
+
+/// The volume between the plate and the origin, `1/3 integral of r . (r_x x r_y)`, with gradients from differences of
+/// positions, which are cubic along x and along y in an element. Five Gauss points make the integral exact.
+struct Volume {
+    weights: Vec<f64>,
+    /// The point and two neighbours on both sides along x and along y.
+    points: Vec<[MaterialPoint; 9]>,
+    step: [f64; 2],
+}
+
+impl Volume {
+    fn new(system: &System, body: BodyId) -> Self {
+        // Abramowitz and Stegun (1964), table 25.4.
+        let (u, v, root) = (10.0_f64 / 7.0, 70.0_f64.sqrt(), 1.0 / 3.0);
+        let (inner, outer) = (root * (5.0 - 2.0 * u.sqrt()).sqrt(), root * (5.0 + 2.0 * u.sqrt()).sqrt());
+        let (heavy, light) = ((322.0 + 13.0 * v) / 900.0, (322.0 - 13.0 * v) / 900.0);
+        let rule = [(-outer, light), (-inner, heavy), (0.0, 128.0 / 225.0), (inner, heavy), (outer, light)];
+        let grid = system.model().body(body).grid();
+        let [l, w] = grid.element_sides();
+        let step = [0.02 * l, 0.02 * w];
+        let (mut weights, mut points) = (Vec::new(), Vec::new());
+        for cell in 0..grid.elements() {
+            let corner = grid.parameters(grid.cell(cell)[0]);
+            for (xi, wx) in rule {
+                for (eta, wy) in rule {
+                    let [x, y] = [corner[0] + 0.5 * (1.0 + xi) * l, corner[1] + 0.5 * (1.0 + eta) * w];
+                    let shifts = [[0, 0], [1, 0], [-1, 0], [2, 0], [-2, 0], [0, 1], [0, -1], [0, 2], [0, -2]]
+                        .map(|s| s.map(f64::from));
+                    points.push(shifts.map(|[i, j]| {
+                        MaterialPoint::new(system.model(), body, [x + i * step[0], y + j * step[1]]).unwrap()
+                    }));
+                    weights.push(0.25 * l * w * wx * wy);
+                }
+            }
+        }
+        Self { weights, points, step }
+    }
+
+    fn evaluate(&self, q: &[f64]) -> f64 {
+        let part = |points: &[MaterialPoint; 9]| {
+            let r: Vec<Vector3<f64>> = points.iter().map(|p| p.evaluate(Quantity::Position, q, q).into()).collect();
+            let along = |k: usize, step: f64| (8.0 * (r[k] - r[k + 1]) - (r[k + 2] - r[k + 3])) / (12.0 * step);
+            r[0].dot(&along(1, self.step[0]).cross(&along(5, self.step[1]))) / 3.0
+        };
+        self.points.iter().zip(&self.weights).map(|(points, weight)| weight * part(points)).sum()
+    }
+}
+
+/// On a plate whose edges cannot move, the force of the pressure is its derivative of the volume.
+#[test]
+fn pressure_does_the_work_of_the_volume() {
+    let (mut model, body) = soft([2, 2]);
+    for (edge, along) in
+        [("x0", NodalVector::RY), ("x1", NodalVector::RY), ("y0", NodalVector::RX), ("y1", NodalVector::RX)]
+    {
+        let place = format!("edge:{edge}").parse().unwrap();
+        pin(&mut model, body, &format!("edge:{edge}"));
+        model.fix(body, place, Fix { vector: along, component: None }).unwrap();
+    }
+    let pressure = 3.0;
+    add_constant(&mut model, LoadKind::Pressure { body, pressure });
+    let system = system(model);
+    let q = random_state(system.model(), 0.3, &mut Random(11));
+    let mut force = vec![0.0; q.len()];
+    system.external_force(&q, 0.0, &mut force);
+    let volume = Volume::new(&system, body);
+    for &i in system.free() {
+        let at = |step: f64| {
+            let mut q = q.clone();
+            q[i] += step;
+            vec![volume.evaluate(&q)]
+        };
+        let expected = pressure * derivative(0.01, at)[0];
+        assert!((force[i] - expected).abs() < 1e-10 * largest(&force), "coordinate {i}: {} and {expected}", force[i]);
+    }
+}
+
+/// The unit outward conormal of an edge and the unit normal there.
+fn edge_frame(system: &System, body: BodyId, edge: &str, at: [f64; 2], q: &[f64]) -> [Vector3<f64>; 2] {
+    let axis = if edge.starts_with('x') { 1 } else { 0 };
+    let step = 0.02 * system.model().body(body).grid().element_sides()[axis];
+    let shifted = |k: f64| {
+        let mut point = at;
+        point[axis] += k * step;
+        position(system, body, point, q)
+    };
+    let along = 8.0 * (shifted(1.0) - shifted(-1.0)) - (shifted(2.0) - shifted(-2.0));
+    let normal: Vector3<f64> =
+        MaterialPoint::new(system.model(), body, at).unwrap().evaluate(Quantity::Normal, q, q).into();
+    // Counter-clockwise around the plate the outward direction is tangent x normal.
+    let sign = if edge == "x1" || edge == "y0" { 1.0 } else { -1.0 };
+    [sign * along.normalize().cross(&normal), normal]
+}
+
+/// The moment does the work of the turn of its edge: of the conormal towards the normal.
+#[test]
+fn moment_does_the_work_of_the_turn() {
+    let per_length = 0.8;
+    for edge in ["x0", "x1", "y0", "y1"] {
+        let (mut model, body) = soft([2, 2]);
+        let loaded = Model::edge_at(format!("edge:{edge}").parse().unwrap()).unwrap();
+        add_constant(&mut model, LoadKind::Moment { body, edge: loaded, per_length });
+        let system = system(model);
+        let mut random = Random(12);
+        let q = random_state(system.model(), 0.2, &mut random);
+        let mut force = vec![0.0; q.len()];
+        system.external_force(&q, 0.0, &mut force);
+
+        let (fixed, along) = if edge.starts_with('x') { (0, 1) } else { (1, 0) };
+        let side = system.model().body(body).grid().element_sides()[along];
+        let mut points = Vec::new();
+        for cell in 0..2 {
+            for (s, weight) in GAUSS {
+                let mut at = [0.0; 2];
+                at[fixed] = if edge.ends_with('1') { SIZE[fixed] } else { 0.0 };
+                at[along] = (f64::from(cell) + s) * side;
+                points.push((at, per_length * weight * side));
+            }
+        }
+        for _ in 0..5 {
+            let direction = random.vector(q.len());
+            let expected: f64 = points
+                .iter()
+                .map(|&(at, weight)| {
+                    let normal = edge_frame(&system, body, edge, at, &q)[1];
+                    let conormal = |step: f64| {
+                        let moved = moved(&q, step, &direction);
+                        edge_frame(&system, body, edge, at, &moved)[0].as_slice().to_vec()
+                    };
+                    weight * dot(normal.as_slice(), &derivative(1e-4, conormal))
+                })
+                .sum();
+            let work = dot(&force, &direction);
+            let scale = largest(&force);
+            assert!((work - expected).abs() < 1e-9 * scale, "{edge}: {work}, expected {expected}");
+        }
+    }
+}
+
+/// What a follower adds to the tangent is the symmetric part of its derivative.
+#[test]
+fn followers_add_the_symmetric_part_of_their_derivative() {
+    type Make = fn(BodyId, &str) -> LoadKind;
+    let pressure: Make = |body, _| LoadKind::Pressure { body, pressure: 3.0 };
+    let moment: Make = |body, edge| {
+        let edge = Model::edge_at(edge.parse().unwrap()).unwrap();
+        LoadKind::Moment { body, edge, per_length: 0.8 }
+    };
+    let cases = [(pressure, ""), (moment, "edge:x0"), (moment, "edge:x1"), (moment, "edge:y0"), (moment, "edge:y1")];
+    for (make, edge) in cases {
+        let (mut model, body) = soft([2, 2]);
+        add_ramp(&mut model, make(body, edge));
+        let mut system = system(model);
+        let q = random_state(system.model(), 0.2, &mut Random(13));
+        // A negative load factor, to see that it is used.
+        let t = -0.5;
+        let added = tangent(&mut system, &q, t) - tangent(&mut system, &q, 0.0);
+        let free = system.free().to_vec();
+        let mut derivatives = added.clone();
+        for (column, &j) in free.iter().enumerate() {
+            let force = |step: f64| {
+                let (mut at, mut force) = (q.clone(), vec![0.0; q.len()]);
+                at[j] += step;
+                system.external_force(&at, t, &mut force);
+                free.iter().map(|&i| force[i]).collect()
+            };
+            derivatives.column_mut(column).copy_from_slice(&derivative(1e-3, force));
+        }
+        let expected = -0.5 * (&derivatives + derivatives.transpose());
+        let error = (&added - &expected).amax() / expected.amax();
+        assert!(error < 1e-8, "{edge}: {error:e}");
+    }
+}

@@ -1,0 +1,11 @@
+//! Integration tests: one module a subject, one program, so that the crate is linked once.
+
+mod architecture;
+mod common;
+mod conformance;
+mod dynamics;
+mod frequencies;
+mod invariance;
+mod loads;
+mod statics;
+mod threads;
