@@ -134,6 +134,7 @@ impl Newton {
         let mut first_energy = f64::NAN;
         let mut smallest = f64::INFINITY;
         let mut stalled = 0;
+        let mut small = false;
         let mut size = f64::INFINITY;
         for iteration in 1..=max_iterations {
             if observer.stop() {
@@ -168,9 +169,10 @@ impl Newton {
             if iteration == 1 {
                 first_energy = energy;
             }
-            // A first correction this small starts at the solution: its energy has nothing to be compared with.
-            let settled = energy <= ENERGY * first_energy || (iteration == 1 && size <= 1e-3 * tolerance);
-            if size <= tolerance && settled {
+            // Where the start is almost the solution the first energy is rounding; then two small corrections settle it.
+            let settled = energy <= ENERGY * first_energy || small;
+            small = size <= tolerance;
+            if small && settled {
                 return Ok(Report { iterations: iteration, negative_pivots: inertia.negative, strain });
             }
             stalled = if size < 0.5 * smallest { 0 } else { stalled + 1 };
