@@ -26,9 +26,10 @@ same from a file, and ``ancf run scene.toml -o folder`` runs such a file.
 """
 
 from ancf._core import __version__
-from ancf.bodies import Rectangle
+from ancf.bodies import Annulus, Cylinder, Rectangle, Sphere
 from ancf.errors import InputError, Interrupted, Mistake, SolveError
 from ancf.loads import Force, Gravity, LineLoad, Moment, Pressure
+from ancf.mapped import Surface
 from ancf.materials import Material
 from ancf.model import Model
 from ancf.probes import Probe
@@ -39,6 +40,8 @@ from ancf.solve import simulate, solve_static
 from ancf.supports import Support
 
 __all__ = [
+    "Annulus",
+    "Cylinder",
     "Dynamic",
     "Energy",
     "Force",
@@ -57,8 +60,10 @@ __all__ = [
     "Result",
     "Scene",
     "SolveError",
+    "Sphere",
     "Static",
     "Support",
+    "Surface",
     "__version__",
     "load_scene",
     "simulate",

@@ -32,6 +32,16 @@ class Shape:
 
     @staticmethod
     def rectangle(size: tuple[float, float]) -> Shape: ...
+    @staticmethod
+    def annulus(radii: tuple[float, float], angle: float) -> Shape: ...
+    @staticmethod
+    def cylinder(radius: float, angle: tuple[float, float], length: tuple[float, float]) -> Shape: ...
+    @staticmethod
+    def sphere(radius: float, longitude: tuple[float, float], latitude: tuple[float, float]) -> Shape: ...
+    @staticmethod
+    def nodes(
+        domain: tuple[tuple[float, float], tuple[float, float]], divisions: tuple[int, int], points: _FloatArray
+    ) -> Shape: ...  # points: (nodes, 12), r, r_x, r_y, r_xy of each node, x fastest
 
 @final
 class Model:

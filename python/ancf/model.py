@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from pydantic import PlainValidator, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from ancf import _core
-from ancf.bodies import Body
+from ancf.bodies import SHAPES, Plate
 from ancf.errors import InputError, Mistake, Mistakes, from_core, one_of, show
 from ancf.inputs import Input, OnBody, table
 from ancf.loads import History, Load
+from ancf.mapped import Surface
 from ancf.places import Domain
 from ancf.probes import QUANTITIES, Probe, Quantity
 from ancf.supports import Support
@@ -50,7 +51,7 @@ class Model(Input):
     (64, 726)
     """
 
-    bodies: Mapping[str, Body]
+    bodies: Mapping[str, Annotated[Plate, PlainValidator(table(*SHAPES, Surface, key="shape"))]]
     supports: Sequence[Annotated[Support, PlainValidator(table(Support))]] = ()
     loads: Sequence[Load] = ()
     probes: Sequence[Annotated[Probe, PlainValidator(table(Probe))]] = ()
@@ -59,7 +60,7 @@ class Model(Input):
 
     @field_validator("bodies")
     @classmethod
-    def _not_empty(cls, bodies: Mapping[str, Body]) -> Mapping[str, Body]:
+    def _not_empty(cls, bodies: Mapping[str, Plate]) -> Mapping[str, Plate]:
         if not bodies:
             raise ValueError("must hold at least one body")
         return bodies

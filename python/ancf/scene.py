@@ -12,7 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import PlainValidator, ValidationInfo, field_validator
 
-from ancf.bodies import Rectangle
+from ancf.bodies import SHAPES, Plate
 from ancf.errors import InputError, Mistake, Mistakes, one_of
 from ancf.inputs import Input, table
 from ancf.loads import Load
@@ -105,7 +105,7 @@ class _File(Input):
 
     title: str = ""
     material: Mapping[str, Annotated[Material, PlainValidator(table(Material))]]
-    body: Mapping[str, Rectangle]
+    body: Mapping[str, Plate]
     support: tuple[Annotated[Support, PlainValidator(table(Support))], ...] = ()
     load: tuple[Load, ...] = ()
     probe: tuple[Annotated[Probe, PlainValidator(table(Probe))], ...] = ()
@@ -118,7 +118,7 @@ class _File(Input):
         if not isinstance(tables, dict):
             raise ValueError("must be a table of bodies, [body.<name>]")
         materials: Mapping[str, Material] | None = info.data.get("material")
-        make = table(Rectangle, key="shape")
+        make = table(*SHAPES, key="shape")
         mistakes = Mistakes()
         bodies = {}
         for name, body in tables.items():

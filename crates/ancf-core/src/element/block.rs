@@ -1,16 +1,15 @@
 //! All elements of a body: what they share, and their energies, forces and tangents side by side.
 
-use std::collections::HashMap;
-
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::lanes::{Lanes, MAX_LANES, Vector};
 use crate::strain::packed;
 
+use super::classes::Classes;
 use super::constants::{COMPONENTS, Constants, Section, point_stride, to_lanes};
 use super::kernel::{Batch, Couplings, Totals};
-use super::tables::{Group, Tables};
+use super::tables::Tables;
 
 /// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
 const TASK: usize = 64;
@@ -71,18 +70,12 @@ pub(crate) struct Block<const N: usize> {
 impl<const N: usize> Block<N> {
     /// Elements on the nodal vectors `vectors`, whose reference state is the nodal coordinates `reference`.
     pub fn new(tables: Tables<N>, vectors: Vec<[u32; N]>, reference: &[f64], section: Section) -> Self {
-        let mut classes: Vec<Constants> = Vec::new();
-        let mut known = HashMap::new();
+        let mut classes = Classes::new(&tables, section.thickness);
         let class_of = vectors
             .iter()
-            .map(|element| {
-                let constants = Constants::new(&tables, &coordinates(element, reference), section);
-                *known.entry(fingerprint(&tables, &constants, section.thickness)).or_insert_with(|| {
-                    classes.push(constants);
-                    (classes.len() - 1) as u32
-                })
-            })
+            .map(|element| classes.find(Constants::new(&tables, &coordinates(element, reference), section)))
             .collect();
+        let classes = classes.finish();
         let couplings = couplings(&tables, &classes);
         Self { arch: Arch::new(), tables, couplings, classes, class_of, vectors }
     }
@@ -91,42 +84,6 @@ impl<const N: usize> Block<N> {
 /// The nodal vectors of an element.
 fn coordinates<const N: usize>(vectors: &[u32; N], q: &[f64]) -> [[f64; 3]; N] {
     vectors.map(|v| [q[3 * v as usize], q[3 * v as usize + 1], q[3 * v as usize + 2]])
-}
-
-/// Equal for elements whose constants agree to rounding: each number in units of 2^-40 of the largest of its kind.
-fn fingerprint<const N: usize>(tables: &Tables<N>, constants: &Constants, thickness: f64) -> Vec<i64> {
-    let mut digits = Vec::with_capacity(constants.values.len() + constants.mass.len());
-    let mut append = |numbers: &mut dyn Iterator<Item = f64>, scale: f64| {
-        digits.extend(numbers.map(|x| (x / scale * 2.0_f64.powi(40)).round() as i64));
-    };
-    let mut rest = constants.values.as_slice();
-    let mut metric: f64 = 0.0;
-    for group in &tables.groups {
-        let (points, modes) = group.size();
-        let (at_points, others) = rest.split_at(points * point_stride(COMPONENTS));
-        let (matrix, others) = others.split_at(modes * (modes + 1) / 2);
-        rest = others;
-        let part = |from: usize, to: usize| {
-            at_points.chunks(point_stride(COMPONENTS)).flat_map(move |p| &p[from..to]).copied()
-        };
-        let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
-        // Curvatures are compared with that which strains the faces by one: a flat surface has only rounding here.
-        let strain = match group {
-            Group::Membrane(_) => {
-                metric = largest(&mut part(1, 1 + COMPONENTS));
-                metric
-            }
-            Group::Bending(..) => metric / thickness,
-        };
-        append(&mut part(0, 1), largest(&mut part(0, 1)));
-        append(&mut part(1, 1 + COMPONENTS), strain);
-        let weights = 1 + COMPONENTS..point_stride(COMPONENTS);
-        append(&mut part(weights.start, weights.end), largest(&mut part(weights.start, weights.end)));
-        append(&mut matrix.iter().copied(), largest(&mut matrix.iter().copied()));
-    }
-    let mass = || constants.mass.iter().copied();
-    append(&mut mass(), mass().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs())));
-    digits
 }
 
 /// The pairs of generalised strains that are coupled in any class.

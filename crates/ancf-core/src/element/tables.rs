@@ -1,5 +1,6 @@
 //! What all elements with the same sides in their parameters share.
 
+use crate::mesh::SurfacePoint;
 use crate::shape::{Polynomial, acm};
 use crate::strain::CurvatureLaw;
 
@@ -60,6 +61,15 @@ impl NodalVector {
             Self::R => "r",
             Self::RX => "r_x",
             Self::RY => "r_y",
+        }
+    }
+
+    /// The vector at a point of a reference surface.
+    pub fn of(self, point: &SurfacePoint) -> [f64; 3] {
+        match self {
+            Self::R => point.r,
+            Self::RX => point.r_x,
+            Self::RY => point.r_y,
         }
     }
 

@@ -4,7 +4,7 @@ mod place;
 mod surface;
 
 pub use place::{Edge, End, Place};
-pub use surface::Surface;
+pub use surface::{Surface, SurfacePoint};
 
 use crate::error::InputError;
 

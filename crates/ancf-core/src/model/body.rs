@@ -82,13 +82,9 @@ impl Body {
     }
 
     /// The nodal coordinates of the reference surface.
-    pub(super) fn reference(&self, surface: &Surface) -> Vec<f64> {
-        (0..self.grid.nodes())
-            .flat_map(|node| {
-                let at = self.grid.parameters(node);
-                self.nodal_vectors().iter().flat_map(move |v| surface.derivative(v.orders(), at))
-            })
-            .collect()
+    pub(super) fn reference(&self, surface: &Surface) -> Result<Vec<f64>, InputError> {
+        let points = surface.at_nodes(&self.grid)?;
+        Ok(points.iter().flat_map(|point| self.nodal_vectors().iter().flat_map(|v| v.of(point))).collect())
     }
 
     /// The elements, ready to be evaluated; `reference` are the nodal coordinates of the whole model at rest.

@@ -86,7 +86,7 @@ impl Model {
         let new = self.bodies.iter().all(|body| body.name() != name);
         InputError::check("name", name, new, "a name that no other body has")?;
         let body = Body::new(name, surface, divisions, plate, self.reference.len() / 3)?;
-        self.reference.extend(body.reference(surface));
+        self.reference.extend(body.reference(surface)?);
         self.fixed.resize(self.reference.len(), false);
         self.bodies.push(body);
         Ok(BodyId(self.bodies.len() - 1))

@@ -1,0 +1,106 @@
+//! Congruent elements: those whose constants agree to rounding share one copy.
+
+use std::collections::HashMap;
+
+use crate::strain::packed;
+
+use super::constants::{COMPONENTS, Constants, point_stride};
+use super::tables::{Group, Tables};
+
+/// Numbers of congruent elements differ by less than this, relative to what they are compared with: well above the
+/// rounding of a fine mesh, and a strain that no load could show.
+const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// Sorts constants into classes.
+pub(super) struct Classes<'a, const N: usize> {
+    tables: &'a Tables<N>,
+    thickness: f64,
+    classes: Vec<Class>,
+    /// The classes by the size of their first number, so that only few are compared number by number.
+    nearby: HashMap<i64, Vec<u32>>,
+}
+
+struct Class {
+    constants: Constants,
+    /// What each number may differ by.
+    tolerance: Vec<f64>,
+}
+
+impl<'a, const N: usize> Classes<'a, N> {
+    pub fn new(tables: &'a Tables<N>, thickness: f64) -> Self {
+        Self { tables, thickness, classes: Vec::new(), nearby: HashMap::new() }
+    }
+
+    /// The number of the class of `constants`: a known one, or a new one made of them.
+    pub fn find(&mut self, constants: Constants) -> u32 {
+        // Cells are so much wider than rounding that equal numbers are in the same or in neighbouring ones.
+        let cell = (constants.values[0].ln() / (ROUNDING * 1024.0)) as i64;
+        let near = (cell - 1..=cell + 1).filter_map(|cell| self.nearby.get(&cell)).flatten().copied();
+        if let Some(known) = near.into_iter().find(|known| self.classes[*known as usize].contains(&constants)) {
+            return known;
+        }
+        let new = self.classes.len() as u32;
+        let tolerance = tolerance(self.tables, &constants, self.thickness);
+        self.classes.push(Class { constants, tolerance });
+        self.nearby.entry(cell).or_default().push(new);
+        new
+    }
+
+    /// The constants of each class.
+    pub fn finish(self) -> Vec<Constants> {
+        self.classes.into_iter().map(|class| class.constants).collect()
+    }
+}
+
+impl Class {
+    fn contains(&self, other: &Constants) -> bool {
+        let Constants { values, mass, weight: _ } = &self.constants;
+        let pairs = values.iter().zip(&other.values).chain(mass.iter().zip(&other.mass));
+        pairs.zip(&self.tolerance).all(|((a, b), tolerance)| (a - b).abs() <= *tolerance)
+    }
+}
+
+/// What each of the values and of the entries of the mass matrix may differ by: a share of the number itself on
+/// diagonals and of the geometric mean of two diagonals beside them, so that the units of the parameters do not count.
+fn tolerance<const N: usize>(tables: &Tables<N>, constants: &Constants, thickness: f64) -> Vec<f64> {
+    let mut tolerance = Vec::with_capacity(constants.values.len() + constants.mass.len());
+    let mut rest = constants.values.as_slice();
+    let mut metric = [0.0; COMPONENTS];
+    for group in &tables.groups {
+        let (points, modes) = group.size();
+        let (at_points, others) = rest.split_at(points * point_stride(COMPONENTS));
+        let (matrix, others) = others.split_at(modes * (modes + 1) / 2);
+        rest = others;
+        for (index, point) in at_points.chunks(point_stride(COMPONENTS)).enumerate() {
+            let (strain, weights) = point[1..].split_at(COMPONENTS);
+            // Curvatures are compared with those that strain the faces by one: a flat surface has only rounding here.
+            let scale = match group {
+                Group::Membrane(_) => {
+                    let scale = [strain[0], strain[1], 2.0 * (strain[0] * strain[1]).sqrt()];
+                    if index == 0 {
+                        metric = scale;
+                    }
+                    scale
+                }
+                Group::Bending(..) => metric.map(|strain| strain / thickness),
+            };
+            let diagonal = |i: usize| weights[i * COMPONENTS + i];
+            tolerance.push(point[0]);
+            tolerance.extend(scale);
+            for i in 0..COMPONENTS {
+                tolerance.extend((0..COMPONENTS).map(|j| (diagonal(i) * diagonal(j)).sqrt()));
+            }
+        }
+        extend_packed(&mut tolerance, matrix, modes);
+    }
+    extend_packed(&mut tolerance, &constants.mass, N);
+    tolerance.iter().map(|scale| ROUNDING * scale).collect()
+}
+
+/// Appends the geometric means of the diagonal entries of a packed matrix.
+fn extend_packed(scales: &mut Vec<f64>, matrix: &[f64], size: usize) {
+    let diagonal = |i: usize| matrix[packed(i, i)];
+    for j in 0..size {
+        scales.extend((0..=j).map(|i| (diagonal(i) * diagonal(j)).sqrt()));
+    }
+}

@@ -1,0 +1,115 @@
+"""Bodies of any shape: a smooth map from two parameters to space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import field_validator
+
+from ancf import _core
+from ancf.bodies import Plate
+from ancf.errors import InputError, Mistake
+from ancf.inputs import Point
+
+FloatArray = NDArray[np.float64]
+
+_STENCIL = 7
+_STEP = float(np.finfo(np.float64).eps) ** (1 / _STENCIL)
+"""Step of the differences relative to the range: their error of sixth order is then that of rounding."""
+
+
+class Surface(Plate):
+    """Any smooth surface: the image of a rectangle of parameters x, y, which are its natural coordinates.
+
+    Parameters
+    ----------
+    domain : pair of pairs of float
+        Ranges of x and y, in any unit.
+    position : callable
+        ``position(x, y)`` returns the three components of the position, m, for arrays x, y of equal shape. It is called
+        inside the domain only.
+    derivatives : callable, optional
+        ``derivatives(x, y)`` returns the triple r_x, r_y, r_xy, each with three components as `position`. If it is
+        left out they are taken from differences of `position`, of sixth order.
+    divisions, thickness, material, element, membrane, curvature
+        As for `Rectangle`.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible, or somewhere r_x and r_y are zero or parallel.
+
+    Examples
+    --------
+    >>> from ancf import Material
+    >>> steel = Material(E=2.1e11, nu=0.3)
+    >>> saddle = Surface(
+    ...     domain=((-1, 1), (-1, 1)),
+    ...     position=lambda x, y: (x, y, x * y / 2),
+    ...     divisions=(8, 8),
+    ...     thickness=0.01,
+    ...     material=steel,
+    ... )
+    """
+
+    shape: ClassVar[str] = "surface"
+
+    domain: tuple[Point, Point]
+    position: Callable[..., Any]
+    derivatives: Callable[..., Any] | None = None
+
+    @field_validator("domain")
+    @classmethod
+    def _increasing(cls, domain: tuple[Point, Point]) -> tuple[Point, Point]:
+        if any(low >= high for low, high in domain):
+            raise ValueError("must be two pairs of increasing numbers")
+        return domain
+
+    def reference(self) -> _core.Shape:
+        """Return the reference surface."""
+        sides = [np.linspace(*ends, number + 1) for ends, number in zip(self.domain, self.divisions, strict=True)]
+        x, y = (grid.ravel() for grid in np.meshgrid(*sides))
+        r = _components(self.position(x, y), x, "position")
+        if self.derivatives is None:
+            vectors = [r, *self._differences(x, y)]
+        else:
+            given = tuple(self.derivatives(x, y))
+            if len(given) != 3:
+                raise InputError(Mistake(("derivatives",), "must return r_x, r_y and r_xy"))
+            vectors = [r, *(_components(vector, x, "derivatives") for vector in given)]
+        return _core.Shape.nodes(self.domain, self.divisions, np.concatenate(vectors, axis=1))
+
+    def _differences(self, x: FloatArray, y: FloatArray) -> list[FloatArray]:
+        """Return r_x, r_y, r_xy, each (points, 3), from positions at 7 x 7 points about each point."""
+        (xs, value_x, slope_x), (ys, value_y, slope_y) = map(_stencil, (x, y), self.domain)
+        X, Y = np.broadcast_arrays(xs[:, :, None], ys[:, None, :])
+        r = _components(self.position(X, Y), X, "position")
+        pairs = [(slope_x, value_y), (value_x, slope_y), (slope_x, slope_y)]
+        return [np.asarray(np.einsum("pa,pb,pabi->pi", along_x, along_y, r)) for along_x, along_y in pairs]
+
+
+def _stencil(x: FloatArray, ends: tuple[float, float]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return points in the range about each x, and the weights of value and derivative at x, each (points, 7)."""
+    low, high = ends
+    step = _STEP * (high - low)
+    first = np.clip(x - step * (_STENCIL // 2), low, high - step * (_STENCIL - 1))
+    places = np.arange(_STENCIL)
+    at = (x - first) / step
+    # Weights that are exact for the first seven powers of the distance from x, in steps.
+    powers = (places - at[:, None])[:, None, :] ** places[:, None]
+    value, slope = (np.linalg.solve(powers, np.eye(_STENCIL)[:, [k]])[..., 0] for k in (0, 1))
+    return first[:, None] + step * places, value, slope / step
+
+
+def _components(given: Any, like: FloatArray, name: str) -> FloatArray:
+    """Return three components, each a number or an array as `like`, as an array (..., 3)."""
+    try:
+        x, y, z = given
+        parts = [np.broadcast_to(np.asarray(part, dtype=np.float64), like.shape) for part in (x, y, z)]
+    except (TypeError, ValueError):
+        problem = "must return three components, each a number or an array of the shape of x and y"
+        raise InputError(Mistake((name,), problem)) from None
+    return np.stack(parts, axis=-1)

@@ -1,0 +1,79 @@
+"""Reference shapes: rectangle, annulus, cylinder, sphere, and any smooth map."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import ancf
+
+FloatArray = NDArray[np.float64]
+
+STEEL = ancf.Material(E=2.1e11, nu=0.3, density=7800.0)
+COMMON: dict[str, Any] = {"divisions": (6, 4), "thickness": 0.02, "material": STEEL}
+SHAPES = {
+    "annulus": ancf.Annulus(radii=(0.5, 2.0), angle=2.0, **COMMON),
+    "cylinder": ancf.Cylinder(radius=2.5, angle=(-1.0, 2.0), length=(-3.0, 1.0), **COMMON),
+    "sphere": ancf.Sphere(radius=1.5, longitude=(-1.0, 2.0), latitude=(-1.2, 1.0), **COMMON),
+}
+POSITIONS = {
+    "annulus": lambda x, y: (x * np.cos(y), x * np.sin(y), 0),
+    "cylinder": lambda x, y: (2.5 * np.cos(x), 2.5 * np.sin(x), y),
+    "sphere": lambda x, y: (1.5 * np.cos(y) * np.cos(x), 1.5 * np.cos(y) * np.sin(x), 1.5 * np.sin(y)),
+}
+
+
+def model(body: Any) -> ancf.Model:
+    return ancf.Model(bodies={"shell": body})
+
+
+@pytest.mark.parametrize("name", list(SHAPES))
+def test_a_map_gives_the_same_as_the_named_shape(name: str) -> None:
+    exact = model(SHAPES[name])
+    mapped = ancf.Surface(domain=exact.domain("shell"), position=POSITIONS[name], **COMMON)
+    np.testing.assert_allclose(model(mapped).nodal_coordinates(), exact.nodal_coordinates(), atol=1e-11)
+
+
+def test_given_derivatives_are_taken() -> None:
+    def derivatives(x: FloatArray, y: FloatArray) -> Any:
+        return (1, 0, y / 2), (0, 1, x / 2), (0, 0, 0.5)
+
+    domain = ((-1.0, 1.0), (0.0, 2.0))
+    saddle = ancf.Surface(domain=domain, position=lambda x, y: (x, y, x * y / 2), derivatives=derivatives, **COMMON)
+    q = model(saddle).nodal_coordinates().reshape(-1, 3, 3)
+    x, y, z = q[:, 0].T
+    np.testing.assert_array_equal(z, x * y / 2)
+    np.testing.assert_array_equal(q[:, 1], np.stack([np.ones_like(x), 0 * x, y / 2], axis=1))
+    np.testing.assert_array_equal(q[:, 2], np.stack([0 * x, np.ones_like(x), x / 2], axis=1))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"position": lambda x, y: (x, y)}, "position: must return three components"),
+        ({"position": lambda x, y: (x, y, x[:2])}, "position: must return three components"),
+        ({"position": lambda x, y: (x, x, 0)}, "neither zero nor parallel"),
+        ({"position": lambda x, y: (x, y, np.nan)}, "neither zero nor parallel"),
+        ({"derivatives": lambda x, y: (x, y)}, "derivatives: must return r_x, r_y and r_xy"),
+        ({"domain": ((0, 1), (1, 1))}, "domain = [[0, 1], [1, 1]]: must be two pairs of increasing numbers"),
+        ({"position": 1}, "position"),
+    ],
+)
+def test_impossible_maps_are_refused(change: dict[str, Any], message: str) -> None:
+    good: dict[str, Any] = {"domain": ((0, 1), (0, 1)), "position": lambda x, y: (x, y, 0), **COMMON}
+    with pytest.raises(ancf.InputError, match=message.replace("[", r"\[")):
+        model(ancf.Surface(**{**good, **change}))
+
+
+def test_unrolled_cylinder() -> None:
+    """A quarter cylinder of radius R, flattened, has the energy E h**3 A / (24 (1 - nu**2) R**2)."""
+    R, h = 2.0, 0.01
+    common: dict[str, Any] = {"divisions": (16, 2), "thickness": h, "material": STEEL, "curvature": "koiter"}
+    curved = model(ancf.Cylinder(radius=R, angle=(0, np.pi / 2), length=(0, 1), **common))
+    flat = model(
+        ancf.Surface(domain=((0, np.pi / 2), (0, 1)), position=lambda x, y: (R * x, y, 0), **common)
+    ).nodal_coordinates()
+    membrane, bending = curved._assembled.energy(flat)
+    assert bending == pytest.approx(2.1e11 * h**3 * np.pi / (24 * (1 - 0.3**2) * R**2), rel=5e-4)
+    assert membrane < 1e-3 * bending
