@@ -8,7 +8,9 @@
 
 mod block;
 mod constants;
+mod corners;
 mod kernel;
+mod projected;
 mod projection;
 mod tables;
 mod thin;
