@@ -154,9 +154,3 @@ pub fn table_axpy<S: Simd>(factor: f64, a: Vector<S>, b: Vector<S>) -> Vector<S>
 pub fn scale<S: Simd>(factor: Lanes<S>, a: Vector<S>) -> Vector<S> {
     [factor * a[0], factor * a[1], factor * a[2]]
 }
-
-/// `a - b`.
-#[inline(always)]
-pub fn sub<S: Simd>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}

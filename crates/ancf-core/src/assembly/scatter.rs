@@ -49,6 +49,8 @@ pub(super) struct Scatter {
     incidents: Vec<Incident>,
     place: Vec<usize>,
     cells: Vec<Vec<[usize; 4]>>,
+    /// For each body and each column of its element tangents the places of the entries.
+    entries: Vec<Vec<Vec<u32>>>,
 }
 
 impl Scatter {
@@ -108,7 +110,12 @@ impl Scatter {
             columns[k].incidents = start..incidents.len();
         }
         let pattern = Arc::new(Pattern::new(first, col_ptr, row_idx)?);
-        Ok(Self { pattern, columns, free, incidents, place: place.clone(), cells: cells.clone() })
+        let entries = cells.iter().map(|cells| {
+            let size = 12 * nodes[cells[0][0]].vectors;
+            (0..size).map(|j| (0..size).map(|i| entry(i, j)).collect()).collect()
+        });
+        let entries = entries.collect();
+        Ok(Self { pattern, columns, free, incidents, place: place.clone(), cells: cells.clone(), entries })
     }
 
     /// The pattern of the tangent.
@@ -154,10 +161,14 @@ impl Scatter {
                 let corner = incident.corner as usize;
                 for (jj, &j) in own.iter().enumerate() {
                     let diagonal = self.pattern.col_ptr()[column.first + jj] - origin;
-                    let j = corner * per_node + j as usize;
-                    for (ii, &i) in own.iter().enumerate().skip(jj) {
-                        values[diagonal + ii - jj] += entry(tangent, corner * per_node + i as usize, j);
-                    }
+                    let entries = &self.entries[block][corner * per_node + j as usize];
+                    let add = |target: &mut [f64], corner: usize, rows: &[u8]| {
+                        let entries = &entries[corner * per_node..(corner + 1) * per_node];
+                        for (value, &i) in target.iter_mut().zip(rows) {
+                            *value += tangent[entries[i as usize] as usize];
+                        }
+                    };
+                    add(&mut values[diagonal..diagonal + own.len() - jj], corner, &own[jj..]);
                     let below = diagonal + own.len() - jj;
                     for (other, &offset) in incident.offsets.iter().enumerate() {
                         if other == corner || offset == ABOVE {
@@ -165,10 +176,7 @@ impl Scatter {
                         }
                         let rows = &self.columns[self.place[self.cells[block][element][other]]];
                         let rows = &self.free[rows.free.clone()];
-                        let target = &mut values[below + offset as usize..][..rows.len()];
-                        for (value, &i) in target.iter_mut().zip(rows) {
-                            *value += entry(tangent, other * per_node + i as usize, j);
-                        }
+                        add(&mut values[below + offset as usize..][..rows.len()], other, rows);
                     }
                 }
             }
@@ -192,9 +200,9 @@ impl Scatter {
     }
 }
 
-/// Entry `(i, j)` of a packed symmetric matrix of 3 x 3 blocks.
-fn entry(tangent: &[f64], i: usize, j: usize) -> f64 {
+/// The place of entry `(i, j)` in a packed symmetric matrix of 3 x 3 blocks.
+fn entry(i: usize, j: usize) -> u32 {
     let (a, b) = (i / 3, j / 3);
     let (block, row, column) = if a <= b { (packed(a, b), i % 3, j % 3) } else { (packed(b, a), j % 3, i % 3) };
-    tangent[9 * block + 3 * row + column]
+    (9 * block + 3 * row + column) as u32
 }

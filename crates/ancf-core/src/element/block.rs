@@ -4,12 +4,13 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::lanes::{Lanes, MAX_LANES, Vector};
-use crate::strain::packed;
+use crate::strain::{self, packed};
 
 use super::classes::Classes;
-use super::constants::{COMPONENTS, Constants, Section, point_stride, to_lanes};
-use super::kernel::{Batch, Couplings, Totals};
-use super::tables::Tables;
+use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
+use super::corners::{combine_all, distribute, distribute_all};
+use super::kernel::{Batch, Tangent, Totals};
+use super::tables::{Group, Tables};
 
 /// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
 const TASK: usize = 64;
@@ -88,23 +89,25 @@ fn coordinates<const N: usize>(vectors: &[u32; N], q: &[f64]) -> [[f64; 3]; N] {
 
 /// The pairs of generalised strains that are coupled in any class.
 fn couplings<const N: usize>(tables: &Tables<N>, classes: &[Constants]) -> Couplings {
-    let mut couplings = Vec::new();
-    let mut offset = 0;
+    let mut start = 0;
     for group in &tables.groups {
-        let (points, modes) = group.size();
-        let start = offset + points * point_stride(COMPONENTS);
-        let largest = |class: &Constants| (0..modes).map(|k| class.values[start + packed(k, k)]).fold(0.0, f64::max);
-        for l in 0..modes {
-            for k in 0..=l {
-                let position = packed(k, l);
-                if classes.iter().any(|class| class.values[start + position].abs() > 1e-15 * largest(class)) {
-                    couplings.push((k, l, position));
-                }
-            }
+        if let Group::Projected(samples, projection) = group {
+            start += samples.tables.len() * COMPONENTS;
+            let modes = projection.modes.len();
+            let coupled = |position: usize| {
+                classes.iter().any(|class| {
+                    let largest = (0..modes).map(|k| class.values[start + packed(k, k)]).fold(0.0, f64::max);
+                    class.values[start + position].abs() > 1e-15 * largest
+                })
+            };
+            let position = |k: usize, l: usize| packed(k.min(l), k.max(l));
+            return (0..modes)
+                .map(|k| (0..modes).map(|l| (l, position(k, l))).filter(|(_, p)| coupled(*p)).collect())
+                .collect();
         }
-        offset = start + modes * (modes + 1) / 2;
+        start += group.constants();
     }
-    couplings
+    Couplings::new()
 }
 
 impl<const N: usize> ElementBlock for Block<N> {
@@ -176,8 +179,8 @@ impl<const N: usize> WithSimd for Task<'_, N> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { block, q, want, first, energy, force, tangent } = self;
         let count = energy.len();
-        let mut totals = Totals::<S, N>::new(simd, want.is_some());
-        let mut constants = Vec::new();
+        let mut combined = want.map(|_| Tangent::<S, N>::new(simd));
+        let (mut constants, mut mass) = (Vec::new(), Vec::new());
         let mut constants_of = [u32::MAX; MAX_LANES];
         for start in (0..count).step_by(S::F64_LANES) {
             // Lanes beyond the last element repeat it; what they give is not stored.
@@ -196,13 +199,20 @@ impl<const N: usize> WithSimd for Task<'_, N> {
                 for (class, &index) in classes.iter_mut().zip(&class_of[..members.len()]) {
                     *class = &block.classes[index as usize];
                 }
-                to_lanes(simd, &classes[..members.len()], &mut constants);
+                let classes = &classes[..members.len()];
+                to_lanes(simd, classes, |class| &class.values, &mut constants);
+                if want.is_some() {
+                    to_lanes(simd, classes, |class| &class.mass, &mut mass);
+                }
                 constants_of = class_of;
             }
 
             let current = gather(simd, &block.vectors, members, q);
             let previous = want.and_then(|w| w.previous).map(|p| gather(simd, &block.vectors, members, p));
-            totals.clear(simd);
+            let mut totals = Totals::<S, N>::new(simd);
+            if let Some(combined) = &mut combined {
+                combined.clear(simd);
+            }
             let batch = Batch {
                 simd,
                 tables: &block.tables,
@@ -211,7 +221,7 @@ impl<const N: usize> WithSimd for Task<'_, N> {
                 current: &current,
                 previous: previous.as_ref(),
             };
-            batch.evaluate(&mut totals);
+            batch.evaluate(&mut totals, combined.as_mut());
 
             let lanes = S::F64_LANES.min(count - start);
             for (i, part) in totals.energy.iter().enumerate() {
@@ -220,23 +230,72 @@ impl<const N: usize> WithSimd for Task<'_, N> {
                     energy[start + lane][i] = values[lane];
                 }
             }
-            for (i, number) in totals.force.iter().flatten().enumerate() {
-                let values = number.to_array();
-                for lane in 0..lanes {
-                    force[(start + lane) * 3 * N + i] = values[lane];
+            let forces = distribute_all(&totals.force);
+            store(forces.as_flattened(), 0, 3 * N, &mut force[start * 3 * N..(start + lanes) * 3 * N]);
+            if let (Some(want), Some(combined)) = (want, &mut combined) {
+                to_corners(&mut combined.blocks);
+                let size = 9 * N * (N + 1) / 2;
+                for (b, column) in combined.blocks.iter_mut().enumerate() {
+                    let column = &mut column[..=b];
+                    for (a, block) in column.iter_mut().enumerate() {
+                        for i in 0..3 {
+                            for j in 0..3 {
+                                block[i][j] = block[i][j] * want.stiffness;
+                            }
+                            block[i][i] = mass[packed(a, b)].scale_add(want.mass, block[i][i]);
+                        }
+                    }
+                    let target = &mut tangent[start * size..(start + lanes) * size];
+                    store(column.as_flattened().as_flattened(), 9 * packed(0, b), size, target);
                 }
             }
-            if let Some(want) = want {
-                for (position, entries) in totals.tangent.iter().enumerate() {
-                    for i in 0..3 {
-                        for j in 0..3 {
-                            let values = entries[i][j].to_array();
-                            let mass = if i == j { want.mass } else { 0.0 };
-                            let target = 9 * position + 3 * i + j;
-                            for lane in 0..lanes {
-                                let inertia = mass * block.mass(members[lane])[position];
-                                tangent[(start + lane) * 9 * N * (N + 1) / 2 + target] =
-                                    want.stiffness * values[lane] + inertia;
+        }
+    }
+}
+
+/// The nodal vectors of several elements in lanes, as sums and differences over the corners.
+#[inline(always)]
+fn gather<S: Simd, const N: usize>(simd: S, vectors: &[[u32; N]], members: &[usize], q: &[f64]) -> [Vector<S>; N] {
+    let mut lanes = [[Lanes::splat(simd, 0.0); 3]; N];
+    for a in 0..N {
+        for i in 0..3 {
+            lanes[a][i] = Lanes::from_fn(simd, |lane| q[3 * vectors[members[lane]][a] as usize + i]);
+        }
+    }
+    combine_all(&lanes)
+}
+
+/// Turns the tangent of the sums and differences over the corners, `blocks[b][a]` for `a <= b`, into that of the nodal
+/// vectors.
+#[inline(always)]
+fn to_corners<S: Simd, const N: usize>(blocks: &mut [[strain::Block<S>; N]; N]) {
+    let kinds = N / 4;
+    for u in 0..kinds {
+        for v in u..kinds {
+            // Only the upper half is stored; entries of the lower one are those of transposed blocks.
+            let stored = |row: usize, column: usize| (row * kinds + u) <= (column * kinds + v);
+            for i in 0..3 {
+                for j in (if u == v { i } else { 0 })..3 {
+                    let mut rows = [[blocks[0][0][0][0]; 4]; 4];
+                    for row in 0..4 {
+                        for column in 0..4 {
+                            let (a, b) = (row * kinds + u, column * kinds + v);
+                            rows[row][column] =
+                                if stored(row, column) { blocks[b][a][i][j] } else { blocks[a][b][j][i] };
+                        }
+                        rows[row] = distribute(rows[row]);
+                    }
+                    for column in 0..4 {
+                        let entries = distribute([rows[0][column], rows[1][column], rows[2][column], rows[3][column]]);
+                        for row in 0..4 {
+                            let (a, b) = (row * kinds + u, column * kinds + v);
+                            if stored(row, column) {
+                                blocks[b][a][i][j] = entries[row];
+                            } else {
+                                blocks[a][b][j][i] = entries[row];
+                            }
+                            if a == b {
+                                blocks[b][b][j][i] = entries[row];
                             }
                         }
                     }
@@ -246,14 +305,13 @@ impl<const N: usize> WithSimd for Task<'_, N> {
     }
 }
 
-/// The nodal vectors of several elements in lanes.
+/// Stores numbers of several elements, which have `size` numbers each, from `first` on.
 #[inline(always)]
-fn gather<S: Simd, const N: usize>(simd: S, vectors: &[[u32; N]], members: &[usize], q: &[f64]) -> [Vector<S>; N] {
-    let mut lanes = [[Lanes::splat(simd, 0.0); 3]; N];
-    for a in 0..N {
-        for i in 0..3 {
-            lanes[a][i] = Lanes::from_fn(simd, |lane| q[3 * vectors[members[lane]][a] as usize + i]);
+fn store<S: Simd>(numbers: &[Lanes<S>], first: usize, size: usize, target: &mut [f64]) {
+    for (i, number) in numbers.iter().enumerate() {
+        let values = number.to_array();
+        for (lane, element) in target.chunks_exact_mut(size).enumerate() {
+            element[first + i] = values[lane];
         }
     }
-    lanes
 }

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use crate::strain::packed;
 
-use super::constants::{COMPONENTS, Constants, point_stride};
+use super::constants::{COMPONENTS, Constants};
+use super::kernel::point_constants;
 use super::tables::{Group, Tables};
 
 /// Numbers of congruent elements differ by less than this, relative to what they are compared with: well above the
@@ -64,37 +65,56 @@ impl Class {
 /// diagonals and of the geometric mean of two diagonals beside them, so that the units of the parameters do not count.
 fn tolerance<const N: usize>(tables: &Tables<N>, constants: &Constants, thickness: f64) -> Vec<f64> {
     let mut tolerance = Vec::with_capacity(constants.values.len() + constants.mass.len());
+    let metric = metric(tables, constants);
     let mut rest = constants.values.as_slice();
-    let mut metric = [0.0; COMPONENTS];
     for group in &tables.groups {
-        let (points, modes) = group.size();
-        let (at_points, others) = rest.split_at(points * point_stride(COMPONENTS));
-        let (matrix, others) = others.split_at(modes * (modes + 1) / 2);
+        let (values, others) = rest.split_at(group.constants());
         rest = others;
-        for (index, point) in at_points.chunks(point_stride(COMPONENTS)).enumerate() {
-            let (strain, weights) = point[1..].split_at(COMPONENTS);
-            // Curvatures are compared with those that strain the faces by one: a flat surface has only rounding here.
-            let scale = match group {
-                Group::Membrane(_) => {
-                    let scale = [strain[0], strain[1], 2.0 * (strain[0] * strain[1]).sqrt()];
-                    if index == 0 {
-                        metric = scale;
+        match group {
+            Group::Projected(samples, projection) => {
+                let (strains, matrix) = values.split_at(samples.tables.len() * COMPONENTS);
+                tolerance.extend(strains.chunks(COMPONENTS).flat_map(stretched));
+                extend_packed(&mut tolerance, matrix, projection.modes.len());
+            }
+            Group::Membrane(_) | Group::Bending(..) => {
+                for point in values.chunks(point_constants(COMPONENTS)) {
+                    let (strain, weights) = point[1..].split_at(COMPONENTS);
+                    // Curvatures are compared with those that strain the faces by one: a flat surface has only
+                    // rounding here.
+                    let scale = match group {
+                        Group::Bending(..) => metric.map(|strain| strain / thickness),
+                        _ => stretched(strain),
+                    };
+                    let diagonal = |i: usize| weights[i * COMPONENTS + i];
+                    tolerance.push(point[0]);
+                    tolerance.extend(scale);
+                    for i in 0..COMPONENTS {
+                        tolerance.extend((0..COMPONENTS).map(|j| (diagonal(i) * diagonal(j)).sqrt()));
                     }
-                    scale
                 }
-                Group::Bending(..) => metric.map(|strain| strain / thickness),
-            };
-            let diagonal = |i: usize| weights[i * COMPONENTS + i];
-            tolerance.push(point[0]);
-            tolerance.extend(scale);
-            for i in 0..COMPONENTS {
-                tolerance.extend((0..COMPONENTS).map(|j| (diagonal(i) * diagonal(j)).sqrt()));
             }
         }
-        extend_packed(&mut tolerance, matrix, modes);
     }
     extend_packed(&mut tolerance, &constants.mass, N);
     tolerance.iter().map(|scale| ROUNDING * scale).collect()
+}
+
+/// What membrane strains of the element are compared with at one of its points.
+fn metric<const N: usize>(tables: &Tables<N>, constants: &Constants) -> [f64; COMPONENTS] {
+    let mut start = 0;
+    for group in &tables.groups {
+        match group {
+            Group::Projected(..) => return stretched(&constants.values[start..]),
+            Group::Membrane(_) => return stretched(&constants.values[start + 1..]),
+            Group::Bending(..) => start += group.constants(),
+        }
+    }
+    [1.0; COMPONENTS]
+}
+
+/// The metric that strains are compared with, from half of it as the samples measure it at the first point.
+fn stretched(strain: &[f64]) -> [f64; COMPONENTS] {
+    [strain[0], strain[1], 2.0 * (strain[0] * strain[1]).sqrt()]
 }
 
 /// Appends the geometric means of the diagonal entries of a packed matrix.

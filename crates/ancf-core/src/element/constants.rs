@@ -7,12 +7,14 @@ use crate::lanes::{Lanes, Vector};
 use crate::material::Material;
 use crate::strain::{Curvature, Measure, Metric, packed};
 
+use super::corners::combine_all;
 use super::tables::{Group, Samples, Tables};
 
 /// The numbers of one class of congruent elements, in the order in which the kernel reads them.
 ///
-/// For each group of samples: for each point the reference area stretch `|R_x x R_y|`, the reference strain (C) and
-/// the weight (C x C), then the packed matrix of weights of the generalised strains if there are any.
+/// For each group of samples that are weighted point by point: the reference area stretch `|R_x x R_y|`, the reference
+/// strain (C) and the weight (C x C) of each point. For a group with generalised strains: the reference strain of each
+/// point, then the packed matrix of the weights of the generalised strains.
 #[derive(Clone, Debug)]
 pub(crate) struct Constants {
     pub values: Vec<f64>,
@@ -33,10 +35,8 @@ pub(crate) struct Section {
 /// Number of strain components of a surface measure.
 pub(crate) const COMPONENTS: usize = 3;
 
-/// Number of constants at a point with `c` strain components.
-pub(crate) const fn point_stride(c: usize) -> usize {
-    1 + c + c * c
-}
+/// For each generalised strain those that its stress depends on in any element, with the position of their weight.
+pub(crate) type Couplings = Vec<Vec<(usize, usize)>>;
 
 impl Constants {
     /// The constants of an element with the reference coordinates `reference`.
@@ -46,33 +46,38 @@ impl Constants {
     /// Dufva and Shabana (2005), (12), (15)-(17), (25), (30)-(34), (37): strains relative to the element's own field,
     /// components covariant, integrals over the reference area.
     pub fn new<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], section: Section) -> Self {
+        let Section { material, thickness } = section;
+        let membrane = thickness;
+        let bending = thickness.powi(3) / 12.0;
+        let projected = tables.groups.iter().any(|group| matches!(group, Group::Projected(..)));
+        let share = if projected { sampled_share(tables, reference, thickness) } else { 1.0 };
+        let vectors = &combine_all(reference);
         let mut values = Vec::new();
         for group in &tables.groups {
             match group {
                 Group::Membrane(samples) => {
-                    let factor = section.thickness;
-                    let delta = full_share(tables, reference, section.thickness);
-                    append::<Metric<Scalar>, N, 2>(
-                        &mut values,
-                        samples,
-                        (),
-                        reference,
-                        section.material,
-                        factor,
-                        delta,
-                    );
+                    for point in points::<Metric<Scalar>, N, 2>(samples, (), vectors, material) {
+                        point.append(share * membrane, &mut values);
+                    }
+                }
+                Group::Projected(samples, projection) => {
+                    let points: Vec<_> = points::<Metric<Scalar>, N, 2>(samples, (), vectors, material).collect();
+                    values.extend(points.iter().flat_map(|point| point.strain));
+                    for (l, second) in projection.modes.iter().enumerate() {
+                        for first in &projection.modes[..=l] {
+                            let entry = first.basis.iter().map(|&(g, phi)| {
+                                let same_point = second.basis.iter().find(|(other, _)| *other == g);
+                                let product = same_point.map_or(0.0, |(_, psi)| phi * psi) / samples.weights[g].powi(2);
+                                product * points[g].weight[first.component][second.component]
+                            });
+                            values.push((1.0 - share) * membrane * entry.sum::<f64>());
+                        }
+                    }
                 }
                 Group::Bending(samples, law) => {
-                    let factor = section.thickness.powi(3) / 12.0;
-                    append::<Curvature<Scalar>, N, 5>(
-                        &mut values,
-                        samples,
-                        *law,
-                        reference,
-                        section.material,
-                        factor,
-                        0.0,
-                    );
+                    for point in points::<Curvature<Scalar>, N, 5>(samples, *law, vectors, material) {
+                        point.append(bending, &mut values);
+                    }
                 }
             }
         }
@@ -93,9 +98,9 @@ impl Constants {
     }
 }
 
-/// The share of the fully integrated membrane energy in the projected one, `min(1, (h / l)^2)`, `l` the larger side:
-/// enough to control every mode, and the whole energy where the element is as thick as it is long.
-fn full_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thickness: f64) -> f64 {
+/// The share of the membrane energy that is not projected, `min(1, (h / l)^2)`, `l` the larger side: enough to control
+/// every mode, and the whole energy where the element is as thick as it is long.
+fn sampled_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thickness: f64) -> f64 {
     let mut sides = [0.0; 2];
     let mut total = 0.0;
     for (shape, weight) in &tables.mass {
@@ -107,19 +112,30 @@ fn full_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thi
     (thickness / longer).powi(2).min(1.0)
 }
 
-/// Appends the constants of a group of surface samples.
-fn append<M: Measure<Scalar, D, 3>, const N: usize, const D: usize>(
-    values: &mut Vec<f64>,
+/// A sample in the reference state.
+struct Point {
+    area: f64,
+    strain: [f64; COMPONENTS],
+    /// Stiffness per thickness (or its third power over 12), times quadrature weight and area stretch.
+    weight: [[f64; COMPONENTS]; COMPONENTS],
+}
+
+impl Point {
+    fn append(&self, factor: f64, values: &mut Vec<f64>) {
+        values.push(self.area);
+        values.extend(self.strain);
+        values.extend(self.weight.iter().flatten().map(|c| factor * c));
+    }
+}
+
+/// The points of a group of surface samples.
+fn points<M: Measure<Scalar, D, COMPONENTS>, const N: usize, const D: usize>(
     samples: &Samples<N, D>,
     law: M::Law,
     reference: &[[f64; 3]; N],
     material: Material,
-    factor: f64,
-    full_share: f64,
-) {
-    let splat = |x: f64| Lanes::splat(Scalar::new(), x);
-    let mut weights = Vec::with_capacity(samples.tables.len());
-    for (table, weight) in samples.tables.iter().zip(&samples.weights) {
+) -> impl Iterator<Item = Point> {
+    samples.tables.iter().zip(&samples.weights).map(move |(table, weight)| {
         let gradients = table.map(|row| interpolate(&row, reference));
         let metric =
             [gradients[0].dot(&gradients[0]), gradients[1].dot(&gradients[1]), gradients[0].dot(&gradients[1])];
@@ -127,30 +143,12 @@ fn append<M: Measure<Scalar, D, 3>, const N: usize, const D: usize>(
         let area = determinant.sqrt();
         let stiffness =
             material.plane_stress([metric[1] / determinant, metric[0] / determinant, -metric[2] / determinant]);
-        let stiffness = stiffness.map(|row| row.map(|c| factor * area * weight * c));
-        let pointwise = if samples.projection.is_some() { full_share } else { 1.0 };
 
+        let splat = |x: f64| Lanes::splat(Scalar::new(), x);
         let lanes: [Vector<Scalar>; D] = gradients.map(|g| [splat(g.x), splat(g.y), splat(g.z)]);
-        values.push(area);
-        values.extend(M::new(law, lanes, splat(area)).strain().map(Lanes::value));
-        values.extend(stiffness.iter().flatten().map(|c| pointwise * c));
-        weights.push(stiffness);
-    }
-    if let Some(projection) = &samples.projection {
-        for (l, second) in projection.modes.iter().enumerate() {
-            for first in &projection.modes[..=l] {
-                let entry: f64 = first
-                    .basis
-                    .iter()
-                    .flat_map(|&(g, phi)| {
-                        second.basis.iter().filter(move |(other, _)| *other == g).map(move |&(_, psi)| (g, phi * psi))
-                    })
-                    .map(|(g, product)| product * weights[g][first.component][second.component])
-                    .sum();
-                values.push((1.0 - full_share) * entry);
-            }
-        }
-    }
+        let strain = M::new(law, lanes, splat(area)).strain().map(Lanes::value);
+        Point { area, strain, weight: stiffness.map(|row| row.map(|c| area * weight * c)) }
+    })
 }
 
 /// `sum_a table_a e_a`.
@@ -158,18 +156,23 @@ fn interpolate<const N: usize>(table: &[f64; N], coordinates: &[[f64; 3]; N]) ->
     table.iter().zip(coordinates).map(|(&t, e)| Vector3::from(*e) * t).sum()
 }
 
-/// The same constants in lanes: one class for all lanes, or one for each.
+/// Numbers of classes in lanes: of one class for all lanes, or of one for each.
 #[inline(always)]
-pub(crate) fn to_lanes<S: Simd>(simd: S, classes: &[&Constants], lanes: &mut Vec<Lanes<S>>) {
+pub(crate) fn to_lanes<S: Simd>(
+    simd: S,
+    classes: &[&Constants],
+    numbers: impl Fn(&Constants) -> &[f64],
+    lanes: &mut Vec<Lanes<S>>,
+) {
     lanes.clear();
     let first = classes[0];
     if classes.iter().all(|class| std::ptr::eq(*class, first)) {
-        for &value in &first.values {
+        for &value in numbers(first) {
             lanes.push(Lanes::splat(simd, value));
         }
     } else {
-        for i in 0..first.values.len() {
-            lanes.push(Lanes::from_fn(simd, |lane| classes[lane].values[i]));
+        for i in 0..numbers(first).len() {
+            lanes.push(Lanes::from_fn(simd, |lane| numbers(classes[lane])[i]));
         }
     }
 }

@@ -1,16 +1,15 @@
 //! Energy, force and tangent of several elements side by side, for every strain measure.
+//!
+//! Everything here is in the sums and differences over the corners of `corners`: coordinates, tables, forces, tangents.
 
 use pulp::Simd;
 
-use crate::lanes::{Lanes, Vector, axpy, table_axpy};
-use crate::strain::{Block, Curvature, Measure, Metric, packed};
+use crate::lanes::{Lanes, Vector, table_axpy};
+use crate::strain::{Block, Curvature, Measure, Metric};
 
-use super::constants::point_stride;
-use super::projection::Projection;
-use super::tables::{Group, Samples, Tables};
-
-/// Positions in the packed weights of the generalised strains that are not zero in every element: `(k, l, position)`.
-pub(crate) type Couplings = Vec<(usize, usize, usize)>;
+use super::constants::Couplings;
+use super::projected;
+use super::tables::{Group, Patch, Samples, Tables};
 
 /// A batch of elements that share their tables.
 pub(crate) struct Batch<'a, S: Simd, const N: usize> {
@@ -18,308 +17,264 @@ pub(crate) struct Batch<'a, S: Simd, const N: usize> {
     pub tables: &'a Tables<N>,
     pub couplings: &'a Couplings,
     pub constants: &'a [Lanes<S>],
-    /// The nodal vectors of the current state.
+    /// The vectors of the current state.
     pub current: &'a [Vector<S>; N],
-    /// The nodal vectors of the state before the last Newton correction, when the geometric stiffness is to use the
-    /// stress extrapolated from there instead of the current one.
+    /// The vectors of the state before the last Newton correction, when the geometric stiffness is to use the stress
+    /// extrapolated from there instead of the current one.
     pub previous: Option<&'a [Vector<S>; N]>,
 }
 
 /// What a batch gives; each part is added to.
 pub(crate) struct Totals<S: Simd, const N: usize> {
-    /// Energy of each sample group.
+    /// Membrane and bending energy.
     pub energy: [Lanes<S>; 2],
-    /// Elastic force on each nodal vector.
+    /// Elastic force on each vector.
     pub force: [Vector<S>; N],
-    /// Tangent, packed blocks; empty if it is not wanted.
-    pub tangent: Vec<Block<S>>,
 }
+
+/// The tangent of a batch, which is added to.
+pub(crate) struct Tangent<S: Simd, const N: usize> {
+    /// `blocks[b][a]` for the vectors `a <= b`.
+    pub blocks: [[Block<S>; N]; N],
+    /// Stiffness of some samples with respect to their gradient vectors.
+    forms: [Block<S>; AT_ONCE * MOST],
+    /// The same with respect to their gradient vectors and one of the vectors.
+    columns: [Block<S>; AT_ONCE],
+}
+
+/// Gradient vectors whose stiffness is kept at a time: what fits the first-level cache, and enough to make up for loading
+/// and storing each block of the tangent once for them all.
+pub(super) const AT_ONCE: usize = 16;
+
+/// The most gradient vectors that a strain measure depends on.
+const MOST: usize = 5;
 
 impl<S: Simd, const N: usize> Totals<S, N> {
     /// Zeros.
     #[inline(always)]
-    pub fn new(simd: S, with_tangent: bool) -> Self {
+    pub fn new(simd: S) -> Self {
         let zero = Lanes::splat(simd, 0.0);
-        let blocks = if with_tangent { N * (N + 1) / 2 } else { 0 };
-        Self { energy: [zero; 2], force: [[zero; 3]; N], tangent: vec![[[zero; 3]; 3]; blocks] }
+        Self { energy: [zero; 2], force: [[zero; 3]; N] }
+    }
+}
+
+impl<S: Simd, const N: usize> Tangent<S, N> {
+    /// Zeros.
+    #[inline(always)]
+    pub fn new(simd: S) -> Self {
+        let none = [[Lanes::splat(simd, 0.0); 3]; 3];
+        Self { blocks: [[none; N]; N], forms: [none; AT_ONCE * MOST], columns: [none; AT_ONCE] }
     }
 
     /// Back to zeros.
     #[inline(always)]
     pub fn clear(&mut self, simd: S) {
-        let zero = Lanes::splat(simd, 0.0);
-        self.energy = [zero; 2];
-        self.force = [[zero; 3]; N];
-        self.tangent.fill([[zero; 3]; 3]);
+        let none = [[Lanes::splat(simd, 0.0); 3]; 3];
+        for b in 0..N {
+            self.blocks[b][..=b].fill(none);
+        }
     }
 }
 
 impl<S: Simd, const N: usize> Batch<'_, S, N> {
-    /// Adds energy, force and, if `totals` has room for it, the tangent of the batch.
+    /// Adds energy, force and, if it is wanted, the tangent of the batch.
     #[inline(always)]
-    pub fn evaluate(&self, totals: &mut Totals<S, N>) {
-        let mut offset = 0;
-        for (index, group) in self.tables.groups.iter().enumerate() {
-            offset += match group {
-                Group::Membrane(samples) => {
-                    self.samples::<Metric<S>, 2, 3>(samples, (), &self.constants[offset..], index, totals)
+    pub fn evaluate(&self, totals: &mut Totals<S, N>, mut tangent: Option<&mut Tangent<S, N>>) {
+        let mut constants = self.constants;
+        for group in &self.tables.groups {
+            let (own, rest) = constants.split_at(group.constants());
+            constants = rest;
+            let tangent = tangent.as_deref_mut();
+            match group {
+                Group::Membrane(samples) => self.samples::<Metric<S>, 2, 3>(samples, (), own, 0, totals, tangent),
+                Group::Projected(samples, projection) => {
+                    projected::add(self, samples, projection, own, totals, tangent);
                 }
                 Group::Bending(samples, law) => {
-                    self.samples::<Curvature<S>, 5, 3>(samples, *law, &self.constants[offset..], index, totals)
+                    self.samples::<Curvature<S>, 5, 3>(samples, *law, own, 1, totals, tangent);
                 }
-            };
+            }
         }
     }
 
-    /// The same for one group of samples; returns how many constants it has.
+    /// The same for samples that are weighted point by point.
     #[inline(always)]
     fn samples<M: Measure<S, D, C>, const D: usize, const C: usize>(
         &self,
         samples: &Samples<N, D>,
         law: M::Law,
         constants: &[Lanes<S>],
-        index: usize,
+        part: usize,
         totals: &mut Totals<S, N>,
-    ) -> usize {
+        mut tangent: Option<&mut Tangent<S, N>>,
+    ) {
         let zero = Lanes::splat(self.simd, 0.0);
-        let points = samples.tables.len();
-        let weights = Weights {
-            projection: samples.projection.as_ref(),
-            quadrature: &samples.weights,
-            couplings: self.couplings,
-            constants,
-        };
-        let with_tangent = !totals.tangent.is_empty();
-
-        // Strains, and those that the last correction would have led to in a linear problem.
-        let mut measures = Vec::with_capacity(points);
-        let mut strain = vec![[zero; C]; points];
-        let mut extrapolated = vec![[zero; C]; if with_tangent && self.previous.is_some() { points } else { 0 }];
-        for (g, table) in samples.tables.iter().enumerate() {
-            let area = constants[g * point_stride(C)];
-            let gradients = gradients(zero, table, self.current);
-            let measure = M::new(law, gradients, area);
-            let value = measure.strain();
-            for c in 0..C {
-                strain[g][c] = value[c] - weights.reference::<C>(g, c);
-            }
-            measures.push(measure);
-            if let (Some(previous), false) = (self.previous, extrapolated.is_empty()) {
-                let before = self::gradients(zero, table, previous);
-                let mut step = gradients;
-                for d in 0..D {
-                    for i in 0..3 {
-                        step[d][i] = gradients[d][i] - before[d][i];
-                    }
-                }
-                let start = M::new(law, before, area);
-                let (value, change) = (start.strain(), start.change(&step));
+        let stride = point_constants(C);
+        let groups = samples.tables.chunks(AT_ONCE / D).zip(constants.chunks(AT_ONCE / D * stride));
+        for (patch, (tables, constants)) in samples.patches.iter().zip(groups) {
+            let mut forces = [[zero; 3]; AT_ONCE];
+            for (g, constants) in constants.chunks(stride).enumerate() {
+                let area = constants[0];
+                let mut reference = [zero; C];
+                let mut weight = [[zero; C]; C];
                 for c in 0..C {
-                    extrapolated[g][c] = value[c] + change[c] - weights.reference::<C>(g, c);
-                }
-            }
-        }
-
-        // Stresses, energy, forces.
-        let mut stress = vec![[zero; C]; points];
-        weights.apply(zero, &strain, &mut stress);
-        for (g, table) in samples.tables.iter().enumerate() {
-            for c in 0..C {
-                totals.energy[index] = (stress[g][c] * 0.5).mul_add(strain[g][c], totals.energy[index]);
-            }
-            let forces = measures[g].forces(stress[g]);
-            for (d, row) in table.iter().enumerate() {
-                for a in 0..N {
-                    totals.force[a] = table_axpy(row[a], forces[d], totals.force[a]);
-                }
-            }
-        }
-
-        if with_tangent {
-            if !extrapolated.is_empty() {
-                weights.apply(zero, &extrapolated, &mut stress);
-            }
-            for (g, table) in samples.tables.iter().enumerate() {
-                measures[g].add_second(stress[g], table, &mut totals.tangent);
-                let mut rows = [[[zero; 3]; C]; N];
-                let mut weighted = [[[zero; 3]; C]; N];
-                for a in 0..N {
-                    let mut entries = [0.0; D];
-                    for d in 0..D {
-                        entries[d] = table[d][a];
+                    reference[c] = constants[1 + c];
+                    for other in 0..C {
+                        weight[c][other] = constants[1 + C + c * C + other];
                     }
-                    rows[a] = measures[g].row(entries);
-                    for c in 0..C {
-                        for other in 0..C {
-                            weighted[a][c] = axpy(weights.entry::<C>(g, c, other), rows[a][other], weighted[a][c]);
+                }
+
+                let gradients = patch.gradients::<S, D>(g, self.current);
+                let measure = M::new(law, gradients, area);
+                let strain = difference(measure.strain(), reference);
+                let stress = times(&weight, strain);
+                for c in 0..C {
+                    totals.energy[part] = (stress[c] * 0.5).mul_add(strain[c], totals.energy[part]);
+                }
+                forces[g * D..(g + 1) * D].copy_from_slice(&measure.forces(stress));
+
+                if let Some(tangent) = &mut tangent {
+                    let stress = match self.previous {
+                        Some(previous) => {
+                            let before = patch.gradients::<S, D>(g, previous);
+                            let extrapolated = extrapolated::<S, M, D, C>(law, area, gradients, before);
+                            times(&weight, difference(extrapolated, reference))
+                        }
+                        None => stress,
+                    };
+                    measure.stiffness(&weight, stress, &mut tangent.forms[g * D * D..(g + 1) * D * D]);
+                }
+            }
+            patch.add_forces(&forces, &mut totals.force);
+            if let Some(tangent) = &mut tangent {
+                patch.add_forms(zero, tables, tangent);
+            }
+        }
+    }
+}
+
+/// Number of constants of a point: the reference area stretch, the reference strain and the weight.
+pub(crate) const fn point_constants(components: usize) -> usize {
+    1 + components + components * components
+}
+
+/// The strain that the last correction would have led to in a linear problem.
+///
+/// # Source
+///
+/// Magisano, Leonetti and Garcea (2017): mixed-integration-point Newton.
+#[inline(always)]
+pub(super) fn extrapolated<S: Simd, M: Measure<S, D, C>, const D: usize, const C: usize>(
+    law: M::Law,
+    area: Lanes<S>,
+    gradients: [Vector<S>; D],
+    before: [Vector<S>; D],
+) -> [Lanes<S>; C] {
+    let mut step = gradients;
+    for d in 0..D {
+        step[d] = difference(gradients[d], before[d]);
+    }
+    let start = M::new(law, before, area);
+    let mut strain = start.strain();
+    let change = start.change(&step);
+    for c in 0..C {
+        strain[c] = strain[c] + change[c];
+    }
+    strain
+}
+
+impl<const N: usize> Patch<N> {
+    /// The gradient vectors at a point.
+    #[inline(always)]
+    pub fn gradients<S: Simd, const D: usize>(&self, point: usize, vectors: &[Vector<S>; N]) -> [Vector<S>; D] {
+        let zero = vectors[0][0].like(0.0);
+        let mut gradients = [[zero; 3]; D];
+        for d in 0..D {
+            gradients[d] = combination(zero, &self.gradients[point * D + d], vectors);
+        }
+        gradients
+    }
+
+    /// Adds the forces on the vectors that the forces on the gradient vectors make.
+    #[inline(always)]
+    pub fn add_forces<S: Simd>(&self, forces: &[Vector<S>], totals: &mut [Vector<S>; N]) {
+        for a in 0..N {
+            let force = combination(totals[a][0].like(0.0), &self.functions[a], forces);
+            for i in 0..3 {
+                totals[a][i] = totals[a][i] + force[i];
+            }
+        }
+    }
+
+    /// Adds the stiffness of the points, `sum_de table_d,a form_de table_e,b`.
+    #[inline(always)]
+    fn add_forms<S: Simd, const D: usize>(
+        &self,
+        zero: Lanes<S>,
+        tables: &[[[f64; N]; D]],
+        Tangent { blocks, forms, columns }: &mut Tangent<S, N>,
+    ) {
+        for b in 0..N {
+            for (table, (form, columns)) in tables.iter().zip(forms.chunks(D * D).zip(columns.chunks_mut(D))) {
+                for d in 0..D {
+                    let mut sum = [[zero; 3]; 3];
+                    for e in 0..D {
+                        let factor = table[e][b];
+                        if factor != 0.0 {
+                            let block = &form[if d <= e { d * D + e } else { e * D + d }];
+                            for i in 0..3 {
+                                for j in 0..3 {
+                                    let entry = if d <= e { block[i][j] } else { block[j][i] };
+                                    sum[i][j] = entry.scale_add(factor, sum[i][j]);
+                                }
+                            }
                         }
                     }
-                }
-                add_products(&rows, &weighted, &mut totals.tangent);
-            }
-            if let Some(projection) = weights.projection {
-                self.add_projected(samples, projection, &weights, &measures, &mut totals.tangent);
-            }
-        }
-        weights.len::<C>(points)
-    }
-
-    /// Adds the material stiffness of the generalised strains.
-    #[inline(always)]
-    fn add_projected<M: Measure<S, D, C>, const D: usize, const C: usize>(
-        &self,
-        samples: &Samples<N, D>,
-        projection: &Projection,
-        weights: &Weights<'_, S>,
-        measures: &[M],
-        tangent: &mut [Block<S>],
-    ) {
-        /// Modes that are multiplied at once.
-        const AT_ONCE: usize = 4;
-
-        let zero = Lanes::splat(self.simd, 0.0);
-        let count = projection.modes.len().div_ceil(AT_ONCE);
-        let mut rows = vec![[[[zero; 3]; AT_ONCE]; N]; count];
-        let mut weighted = rows.clone();
-        for (g, table) in samples.tables.iter().enumerate() {
-            for a in 0..N {
-                let mut entries = [0.0; D];
-                for d in 0..D {
-                    entries[d] = table[d][a];
-                }
-                let row = measures[g].row(entries);
-                for &(mode, factor) in &projection.at_point[g] {
-                    let target = &mut rows[mode / AT_ONCE][a][mode % AT_ONCE];
-                    *target =
-                        table_axpy(factor * weights.quadrature[g], row[projection.modes[mode].component], *target);
+                    columns[d] = sum;
                 }
             }
-        }
-        let start = weights.matrix_start::<C>(measures.len());
-        for &(k, l, position) in self.couplings {
-            let weight = weights.constants[start + position];
-            for a in 0..N {
-                let target = &mut weighted[k / AT_ONCE][a][k % AT_ONCE];
-                *target = axpy(weight, rows[l / AT_ONCE][a][l % AT_ONCE], *target);
-                if k != l {
-                    let target = &mut weighted[l / AT_ONCE][a][l % AT_ONCE];
-                    *target = axpy(weight, rows[k / AT_ONCE][a][k % AT_ONCE], *target);
-                }
-            }
-        }
-        for (rows, weighted) in rows.iter().zip(&weighted) {
-            add_products(rows, weighted, tangent);
-        }
-    }
-}
-
-/// `W` of one group of samples.
-struct Weights<'a, S: Simd> {
-    projection: Option<&'a Projection>,
-    quadrature: &'a [f64],
-    couplings: &'a Couplings,
-    constants: &'a [Lanes<S>],
-}
-
-impl<S: Simd> Weights<'_, S> {
-    /// The reference strain.
-    #[inline(always)]
-    fn reference<const C: usize>(&self, point: usize, component: usize) -> Lanes<S> {
-        self.constants[point * point_stride(C) + 1 + component]
-    }
-
-    /// The weight that couples two components at a point.
-    #[inline(always)]
-    fn entry<const C: usize>(&self, point: usize, row: usize, column: usize) -> Lanes<S> {
-        self.constants[point * point_stride(C) + 1 + C + row * C + column]
-    }
-
-    /// Where the packed weights of the generalised strains begin.
-    #[inline(always)]
-    fn matrix_start<const C: usize>(&self, points: usize) -> usize {
-        points * point_stride(C)
-    }
-
-    /// The number of constants.
-    #[inline(always)]
-    fn len<const C: usize>(&self, points: usize) -> usize {
-        let modes = self.projection.map_or(0, |p| p.modes.len());
-        self.matrix_start::<C>(points) + modes * (modes + 1) / 2
-    }
-
-    /// `stress = W strain`.
-    #[inline(always)]
-    fn apply<const C: usize>(&self, zero: Lanes<S>, strain: &[[Lanes<S>; C]], stress: &mut [[Lanes<S>; C]]) {
-        for g in 0..strain.len() {
-            for c in 0..C {
-                let mut sum = zero;
-                for other in 0..C {
-                    sum = self.entry::<C>(g, c, other).mul_add(strain[g][other], sum);
-                }
-                stress[g][c] = sum;
-            }
-        }
-        if let Some(projection) = self.projection {
-            let mut amplitudes = vec![zero; projection.modes.len()];
-            let mut conjugates = amplitudes.clone();
-            for (amplitude, mode) in amplitudes.iter_mut().zip(&projection.modes) {
-                for &(g, phi) in &mode.basis {
-                    *amplitude = strain[g][mode.component].scale_add(self.quadrature[g] * phi, *amplitude);
-                }
-            }
-            let start = self.matrix_start::<C>(strain.len());
-            for &(k, l, position) in self.couplings {
-                let weight = self.constants[start + position];
-                conjugates[k] = weight.mul_add(amplitudes[l], conjugates[k]);
-                if k != l {
-                    conjugates[l] = weight.mul_add(amplitudes[k], conjugates[l]);
-                }
-            }
-            for (conjugate, mode) in conjugates.iter().zip(&projection.modes) {
-                for &(g, phi) in &mode.basis {
-                    stress[g][mode.component] =
-                        conjugate.scale_add(self.quadrature[g] * phi, stress[g][mode.component]);
-                }
-            }
-        }
-    }
-}
-
-/// The gradient vectors at a point.
-#[inline(always)]
-fn gradients<S: Simd, const N: usize, const D: usize>(
-    zero: Lanes<S>,
-    table: &[[f64; N]; D],
-    coordinates: &[Vector<S>; N],
-) -> [Vector<S>; D] {
-    let mut gradients = [[zero; 3]; D];
-    for d in 0..D {
-        for a in 0..N {
-            gradients[d] = table_axpy(table[d][a], coordinates[a], gradients[d]);
-        }
-    }
-    gradients
-}
-
-/// Adds `sum_c rows_c^T weighted_c` to the packed blocks.
-#[inline(always)]
-fn add_products<S: Simd, const N: usize, const C: usize>(
-    rows: &[[Vector<S>; C]; N],
-    weighted: &[[Vector<S>; C]; N],
-    blocks: &mut [Block<S>],
-) {
-    for b in 0..N {
-        for a in 0..=b {
-            let block = &mut blocks[packed(a, b)];
-            for i in 0..3 {
-                for j in 0..3 {
-                    let mut sum = block[i][j];
-                    for c in 0..C {
-                        sum = rows[a][c][i].mul_add(weighted[b][c][j], sum);
+            for a in 0..=b {
+                let mut sum = blocks[b][a];
+                for &(gradient, factor) in &self.functions[a] {
+                    for i in 0..3 {
+                        sum[i] = table_axpy(factor, columns[gradient][i], sum[i]);
                     }
-                    block[i][j] = sum;
                 }
+                blocks[b][a] = sum;
             }
         }
     }
+}
+
+/// `sum factor_i vectors_i` over the entries `(i, factor_i)`.
+#[inline(always)]
+pub(super) fn combination<S: Simd>(zero: Lanes<S>, entries: &[(usize, f64)], vectors: &[Vector<S>]) -> Vector<S> {
+    let mut sum = [zero; 3];
+    for &(i, factor) in entries {
+        sum = table_axpy(factor, vectors[i], sum);
+    }
+    sum
+}
+
+/// `weight strain`.
+#[inline(always)]
+fn times<S: Simd, const C: usize>(weight: &[[Lanes<S>; C]; C], strain: [Lanes<S>; C]) -> [Lanes<S>; C] {
+    let mut stress = strain;
+    for c in 0..C {
+        stress[c] = weight[c][0] * strain[0];
+        for other in 1..C {
+            stress[c] = weight[c][other].mul_add(strain[other], stress[c]);
+        }
+    }
+    stress
+}
+
+/// `a - b`.
+#[inline(always)]
+pub(super) fn difference<S: Simd, const C: usize>(a: [Lanes<S>; C], b: [Lanes<S>; C]) -> [Lanes<S>; C] {
+    let mut difference = a;
+    for c in 0..C {
+        difference[c] = a[c] - b[c];
+    }
+    difference
 }

@@ -9,7 +9,9 @@
 mod block;
 mod classes;
 mod constants;
+mod corners;
 mod kernel;
+mod projected;
 mod projection;
 mod tables;
 mod thin;

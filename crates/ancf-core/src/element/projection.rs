@@ -4,31 +4,54 @@
 //! projection, component by component, on spaces that the element can control removes the locking.
 
 use crate::quadrature::Rule;
+use crate::strain::packed;
+
+use super::tables::Samples;
+
+/// Number of sample points.
+pub(crate) const POINTS: usize = 16;
+
+/// Number of generalised strains.
+pub(crate) const MODES: usize = 20;
 
 /// One generalised strain: the coefficient of a basis function that is orthonormal in the quadrature.
 #[derive(Clone, Debug)]
 pub(crate) struct Mode {
     /// The strain component it belongs to.
     pub component: usize,
-    /// Sample point and value of the basis function there, where it is not zero.
+    /// Sample point and value of the basis function there times the quadrature weight, where it is not zero.
     pub basis: Vec<(usize, f64)>,
 }
 
-/// Generalised strains `e_k = sum_g w_g phi_k(g) eps(g)`; the projected strain is `sum_k phi_k e_k`.
+/// The part of one vector in the derivative of a generalised strain: gradient vectors, numbered `2 g` for `r_x` and
+/// `2 g + 1` for `r_y` at point g, with their factors.
 #[derive(Clone, Debug)]
-pub(crate) struct Projection {
-    pub modes: Vec<Mode>,
-    /// For each sample point, the modes that see it and the value of their basis function there.
-    pub at_point: Vec<Vec<(usize, f64)>>,
+pub(crate) struct Row {
+    pub mode: usize,
+    pub gradients: Vec<(usize, f64)>,
 }
 
-impl Projection {
+/// Generalised strains `e_k = sum_g w_g phi_k(g) eps(g)`; the projected strain is `sum_k phi_k e_k`.
+///
+/// They are quadratic in the vectors `q_a`: `de_k = sum_a row_k,a . dq_a`, and the second derivative is a multiple of the
+/// identity for each pair of vectors.
+#[derive(Clone, Debug)]
+pub(crate) struct Projection<const N: usize> {
+    pub modes: Vec<Mode>,
+    /// For each vector the rows of the modes that depend on it.
+    pub rows: [Vec<Row>; N],
+    /// Second derivatives, packed: for each pair of vectors the modes that depend on both, with the factor.
+    pub second: Vec<Vec<(usize, f64)>>,
+}
+
+impl<const N: usize> Projection<N> {
     /// The membrane projection on 4 x 4 Gauss points: `E_xx` on `P1(x) P3(y)`, `E_yy` on `P3(x) P1(y)`, `E_xy` on
-    /// `P1 P1`, in an element with the given parameter area. 20 modes for 48 samples.
+    /// `P1 P1`. 20 modes for 48 samples.
     ///
     /// The basis of the cubics is the one of the Gauss points themselves, so that most modes see four samples only.
-    pub fn membrane(area: f64) -> Self {
+    pub fn membrane(samples: &Samples<N, 2>) -> Self {
         let points = Rule::Gauss(4).points();
+        let scale = 1.0 / samples.weights.iter().sum::<f64>().sqrt();
         // Legendre polynomials of degree 0 and 1, and the point functions, orthonormal on the unit interval.
         let linear = |degree: usize, i: usize| match degree {
             0 => 1.0,
@@ -36,26 +59,62 @@ impl Projection {
         };
         let at_point = |j: usize, i: usize| if i == j { 1.0 / points[j].1.sqrt() } else { 0.0 };
         let mode = |component: usize, along_x: &dyn Fn(usize) -> f64, along_y: &dyn Fn(usize) -> f64| {
-            let scale = 1.0 / area.sqrt();
-            let values = (0..16).map(|g| (g, scale * along_x(g % 4) * along_y(g / 4)));
+            let values = (0..POINTS).map(|g| (g, samples.weights[g] * scale * along_x(g % 4) * along_y(g / 4)));
             Mode { component, basis: values.filter(|(_, value)| *value != 0.0).collect() }
         };
-        let mut modes = Vec::new();
-        for degree in 0..2 {
-            for j in 0..4 {
-                modes.push(mode(0, &|i| linear(degree, i), &|i| at_point(j, i)));
-                modes.push(mode(1, &|i| at_point(j, i), &|i| linear(degree, i)));
+        let mut modes = Vec::with_capacity(MODES);
+        for component in 0..2 {
+            for degree in 0..2 {
+                for j in 0..4 {
+                    modes.push(match component {
+                        0 => mode(0, &|i| linear(degree, i), &|i| at_point(j, i)),
+                        _ => mode(1, &|i| at_point(j, i), &|i| linear(degree, i)),
+                    });
+                }
             }
+        }
+        for degree in 0..2 {
             for other in 0..2 {
                 modes.push(mode(2, &|i| linear(degree, i), &|i| linear(other, i)));
             }
         }
-        let mut at_point = vec![Vec::new(); 16];
-        for (k, mode) in modes.iter().enumerate() {
-            for &(g, phi) in &mode.basis {
-                at_point[g].push((k, phi));
+
+        // d E_xx = t_x r_x . dq, d E_yy = t_y r_y . dq, d 2 E_xy = (t_y r_x + t_x r_y) . dq
+        let rows = std::array::from_fn(|a| {
+            let row = |(k, mode): (usize, &Mode)| {
+                let gradients = mode.basis.iter().flat_map(|&(g, weight)| {
+                    let [tx, ty] = samples.tables[g].map(|row| weight * row[a]);
+                    match mode.component {
+                        0 => [(2 * g, tx), (2 * g + 1, 0.0)],
+                        1 => [(2 * g, 0.0), (2 * g + 1, ty)],
+                        _ => [(2 * g, ty), (2 * g + 1, tx)],
+                    }
+                });
+                Row { mode: k, gradients: gradients.filter(|(_, factor)| *factor != 0.0).collect() }
+            };
+            modes.iter().enumerate().map(row).filter(|row| !row.gradients.is_empty()).collect()
+        });
+        let mut second = vec![Vec::new(); N * (N + 1) / 2];
+        for b in 0..N {
+            for a in 0..=b {
+                let factor = |mode: &Mode| {
+                    let terms = mode.basis.iter().map(|&(g, weight)| {
+                        let [x, y] = &samples.tables[g];
+                        let product = match mode.component {
+                            0 => x[a] * x[b],
+                            1 => y[a] * y[b],
+                            _ => x[a] * y[b] + y[a] * x[b],
+                        };
+                        [weight * product, (weight * product).abs()]
+                    });
+                    let [sum, size] = terms.fold([0.0, 0.0], |[s, m], [t, u]| [s + t, m + u]);
+                    // Zero by symmetry but for rounding.
+                    if sum.abs() < 1e-13 * size { 0.0 } else { sum }
+                };
+                let factors = modes.iter().map(factor).enumerate();
+                second[packed(a, b)] = factors.filter(|(_, factor)| *factor != 0.0).collect();
             }
         }
-        Self { modes, at_point }
+        Self { modes, rows, second }
     }
 }

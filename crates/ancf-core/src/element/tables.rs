@@ -4,7 +4,9 @@ use crate::mesh::SurfacePoint;
 use crate::shape::{Polynomial, acm};
 use crate::strain::CurvatureLaw;
 
-use super::projection::Projection;
+use super::constants::COMPONENTS;
+use super::kernel::{AT_ONCE, point_constants};
+use super::projection::{MODES, Projection};
 
 /// The element types, by the names that scenes use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,30 +88,62 @@ impl NodalVector {
 /// Strain samples of one measure: the points, their shape tables, and how the samples are weighted.
 #[derive(Clone, Debug)]
 pub(crate) struct Samples<const N: usize, const D: usize> {
-    /// Derivatives of the shape functions that make up the gradient vectors, at each point.
+    /// Derivatives of the shape functions that make up the gradient vectors, at each point, for the sums and differences
+    /// over the corners (see `corners`).
     pub tables: Vec<[[f64; N]; D]>,
     /// Quadrature weight of each point over the parameter rectangle.
     pub weights: Vec<f64>,
-    /// Generalised strains that carry (most of) the energy in place of the samples themselves.
-    pub projection: Option<Projection>,
+    /// The entries of the tables that are not zero, for some points at a time.
+    pub patches: Vec<Patch<N>>,
+}
+
+/// What is not zero in the tables of consecutive points, whose gradient vectors are numbered through.
+#[derive(Clone, Debug)]
+pub(crate) struct Patch<const N: usize> {
+    /// For each gradient vector the functions it consists of, with their values.
+    pub gradients: Vec<Vec<(usize, f64)>>,
+    /// For each function the gradient vectors it is part of, with its values.
+    pub functions: [Vec<(usize, f64)>; N],
+}
+
+impl<const N: usize, const D: usize> Samples<N, D> {
+    /// Samples with the given tables and quadrature weights.
+    pub fn new(tables: Vec<[[f64; N]; D]>, weights: Vec<f64>) -> Self {
+        let patches = tables.chunks(AT_ONCE / D).map(Patch::new).collect();
+        Self { tables, weights, patches }
+    }
+}
+
+impl<const N: usize> Patch<N> {
+    fn new<const D: usize>(tables: &[[[f64; N]; D]]) -> Self {
+        let rows = tables.as_flattened();
+        let not_zero =
+            |entries: &mut dyn Iterator<Item = f64>| entries.enumerate().filter(|(_, t)| *t != 0.0).collect();
+        Self {
+            gradients: rows.iter().map(|row| not_zero(&mut row.iter().copied())).collect(),
+            functions: std::array::from_fn(|a| not_zero(&mut rows.iter().map(|row| row[a]))),
+        }
+    }
 }
 
 /// A group of samples with its strain measure.
 #[derive(Clone, Debug)]
 pub(crate) enum Group<const N: usize> {
-    /// Membrane strain of a surface.
+    /// Membrane strain of a surface, with its whole energy or, beside a projected group, a share of it.
     Membrane(Samples<N, 2>),
+    /// Membrane strain of a surface by generalised strains.
+    Projected(Samples<N, 2>, Projection<N>),
     /// Curvature of a surface.
     Bending(Samples<N, 5>, CurvatureLaw),
 }
 
 impl<const N: usize> Group<N> {
-    /// Number of sample points and of generalised strains.
-    pub fn size(&self) -> (usize, usize) {
-        let modes = |projection: &Option<Projection>| projection.as_ref().map_or(0, |p| p.modes.len());
+    /// Number of constants of an element for this group.
+    pub fn constants(&self) -> usize {
         match self {
-            Self::Membrane(samples) => (samples.tables.len(), modes(&samples.projection)),
-            Self::Bending(samples, _) => (samples.tables.len(), modes(&samples.projection)),
+            Self::Membrane(samples) => samples.tables.len() * point_constants(COMPONENTS),
+            Self::Projected(samples, _) => samples.tables.len() * COMPONENTS + MODES * (MODES + 1) / 2,
+            Self::Bending(samples, _) => samples.tables.len() * point_constants(COMPONENTS),
         }
     }
 }

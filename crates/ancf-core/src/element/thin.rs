@@ -4,6 +4,7 @@ use crate::quadrature::Rule;
 use crate::shape::{Polynomial, acm};
 use crate::strain::CurvatureLaw;
 
+use super::corners::functions;
 use super::projection::Projection;
 use super::tables::{Derivatives, Group, Samples, Tables, derivative};
 
@@ -60,14 +61,19 @@ fn tables<const N: usize>(
     let (membrane_rule, bending_rule) = membrane.rules();
     let area = sides[0] * sides[1];
     let at = |orders: [usize; 2], point: [f64; 2]| derivative(&functions, sides, orders, point);
-    let projection = (membrane == Membrane::Projected).then(|| Projection::membrane(area));
-    let groups = vec![
-        Group::Membrane(samples(area, membrane_rule, projection, |p| [[1, 0], [0, 1]].map(|d| at(d, p)))),
-        Group::Bending(
-            samples(area, bending_rule, None, |p| [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|d| at(d, p))),
-            curvature,
-        ),
-    ];
+    let membrane_samples = |rule| samples(area, rule, |p| [[1, 0], [0, 1]].map(|d| at(d, p)));
+    let mut groups = vec![Group::Bending(
+        samples(area, bending_rule, |p| [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|d| at(d, p))),
+        curvature,
+    )];
+    if membrane == Membrane::Projected {
+        let samples = membrane_samples(membrane_rule);
+        let projection = Projection::membrane(&samples);
+        groups.push(Group::Projected(samples, projection));
+        groups.push(Group::Membrane(membrane_samples(membrane_rule)));
+    } else {
+        groups.push(Group::Membrane(membrane_samples(membrane_rule)));
+    }
     let mass = Rule::Gauss(5).square().into_iter().map(|(point, weight)| {
         (Derivatives { value: at([0, 0], point), x: at([1, 0], point), y: at([0, 1], point) }, weight * area)
     });
@@ -78,9 +84,9 @@ fn tables<const N: usize>(
 fn samples<const N: usize, const D: usize>(
     area: f64,
     rule: Rule,
-    projection: Option<Projection>,
     table: impl Fn([f64; 2]) -> [[f64; N]; D],
 ) -> Samples<N, D> {
-    let (tables, weights) = rule.square().into_iter().map(|(point, weight)| (table(point), weight * area)).unzip();
-    Samples { tables, weights, projection }
+    let points = rule.square().into_iter();
+    let (tables, weights) = points.map(|(p, weight)| (table(p).map(|row| functions(&row)), weight * area)).unzip();
+    Samples::new(tables, weights)
 }

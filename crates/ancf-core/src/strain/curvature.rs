@@ -2,8 +2,8 @@
 
 use pulp::Simd;
 
-use super::{Block, Measure, packed};
-use crate::lanes::{Lanes, Vector, axpy, cross, dot, scale, sub};
+use super::{Block, Measure, add_outer};
+use crate::lanes::{Lanes, Vector, axpy, cross, dot, scale};
 
 /// How the curvature takes the stretch of the surface, `J = |n| / |N|`, into account.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -97,8 +97,11 @@ impl<S: Simd> Measure<S, 5, 3> for Curvature<S> {
         let n = self.scaled_normal();
         let (p, q) = (cross(*dx, self.y), cross(self.x, *dy));
         let dn = [p[0] + q[0], p[1] + q[1], p[2] + q[2]];
-        let component = |b: Vector<S>, db: Vector<S>| dot(n, db) + dot(self.normal_derivative(b), dn);
-        [component(self.second[0], *dxx), component(self.second[1], *dyy), component(self.second[2], *dxy) * 2.0]
+        let mut change = [dot(n, *dxx), dot(n, *dyy), dot(n, *dxy)];
+        for c in 0..3 {
+            change[c] = change[c] + dot(self.normal_derivative(self.second[c]), dn);
+        }
+        [change[0], change[1], change[2] * 2.0]
     }
 
     #[inline(always)]
@@ -109,87 +112,98 @@ impl<S: Simd> Measure<S, 5, 3> for Curvature<S> {
         [cross(self.y, g), cross(g, self.x), scale(xx, n), scale(yy, n), scale(xy * 2.0, n)]
     }
 
+    /// With `v` the weighted second derivatives, the energy `f v . n` of constant stress depends on the gradients through
+    /// `n` and `v`, by `g = d(f v . n)/dn`, `H = dg/dn` and `F = d(f n)/dn`; `dn = dr_x x r_y + r_x x dr_y`.
     #[inline(always)]
-    fn row(&self, [tx, ty, txx, tyy, txy]: [f64; 5]) -> [Vector<S>; 3] {
-        let n = self.scaled_normal();
-        // The change of n with the nodal vector is t x (that vector), see `add_second`; so g . dn = (g x t) . de.
-        let t = lever(ty, self.x, tx, self.y);
-        let row = |factor: f64, b: Vector<S>| {
-            let g = cross(self.normal_derivative(b), t);
-            [n[0].scale_add(factor, g[0]), n[1].scale_add(factor, g[1]), n[2].scale_add(factor, g[2])]
-        };
-        let twist = row(txy, self.second[2]);
-        [row(txx, self.second[0]), row(tyy, self.second[1]), [twist[0] * 2.0, twist[1] * 2.0, twist[2] * 2.0]]
-    }
+    fn stiffness(&self, weight: &[[Lanes<S>; 3]; 3], stress: [Lanes<S>; 3], form: &mut [Block<S>]) {
+        const D: usize = 5;
 
-    /// With `v` the weighted second derivatives, the energy `f v . n` depends on nodal vectors through `n` and `v`:
-    /// `dn = t_b x de_b`, `t_b = N_b,y r_x - N_b,x r_y`, and `dv = c_b de_b`. So
-    /// `K_ab = [t_a]^T H [t_b] + c_a F [t_b] + c_b [t_a]^T F + (N_a,y N_b,x - N_a,x N_b,y) [g]`,
-    /// where `[t]` is the matrix of the vector product, `g = d(f v . n)/dn`, `H = dg/dn`, `F = d(f n)/dn`.
-    #[inline(always)]
-    fn add_second<const N: usize>(
-        &self,
-        stress: [Lanes<S>; 3],
-        [tx, ty, txx, tyy, txy]: &[[f64; N]; 5],
-        blocks: &mut [Block<S>],
-    ) {
+        let (x, y, u) = (self.x, self.y, self.unit_normal);
         let v = self.weighted(stress);
-        let g = self.normal_derivative(v);
-        let u = self.unit_normal;
-        let over = self.f / self.length * -self.power;
         let along = dot(v, u);
+        let over = self.f / self.length * -self.power;
         let zero = over.like(0.0);
-        let mut h = [[zero; 3]; 3];
-        let mut f = [[zero; 3]; 3];
+        let none = [[zero; 3]; 3];
+        // H = over (v u^T + u v^T + along (1 - (power + 2) u u^T)), F = f (1 - power u u^T).
+        let middle = scale(over, axpy(along * (-0.5 * (self.power + 2.0)), u, v));
+        let mut h = add_outer(middle, u, add_outer(u, middle, none));
+        let mut f = add_outer(scale(self.f * -self.power, u), u, none);
         for i in 0..3 {
-            for j in 0..3 {
-                let uu = u[i] * u[j];
-                h[i][j] = over * (v[i] * u[j] + u[i] * v[j] - along * uu * (self.power + 2.0));
-                f[i][j] = self.f * (uu * -self.power);
-            }
-            h[i][i] = h[i][i] + over * along;
+            h[i][i] = over.mul_add(along, h[i][i]);
             f[i][i] = f[i][i] + self.f;
         }
 
-        let [xx, yy, xy] = stress;
-        let twice = xy * 2.0;
-        let mut levers = [[zero; 3]; N];
-        let mut weights = [zero; N];
-        for b in 0..N {
-            levers[b] = lever(ty[b], self.x, tx[b], self.y);
-            weights[b] = twice.scale_add(txy[b], yy.scale_add(tyy[b], xx * txx[b]));
+        // The change of each curvature with r_x and r_y, and the weighted sums of these.
+        let twice = [1.0, 1.0, 2.0];
+        let mut by_x = none;
+        let mut by_y = none;
+        for c in 0..3 {
+            let by_normal = scale(zero.like(twice[c]), self.normal_derivative(self.second[c]));
+            by_x[c] = cross(y, by_normal);
+            by_y[c] = cross(by_normal, x);
         }
-        for b in 0..N {
-            // Columns of F [t_b] and of H [t_b] + c_b F; H and F are symmetric, so row i of H [t] is h_i x t.
-            let mut coupling = [[zero; 3]; 3];
-            let mut inner = [[zero; 3]; 3];
-            for i in 0..3 {
-                coupling[i] = cross(f[i], levers[b]);
-                inner[i] = axpy(weights[b], f[i], cross(h[i], levers[b]));
+        let mut weighted_x = none;
+        let mut weighted_y = none;
+        for c in 0..3 {
+            for e in 0..3 {
+                weighted_x[c] = axpy(weight[c][e], by_x[e], weighted_x[c]);
+                weighted_y[c] = axpy(weight[c][e], by_y[e], weighted_y[c]);
             }
-            for a in 0..=b {
-                let block = &mut blocks[packed(a, b)];
-                let t = levers[a];
-                let c = weights[a];
-                let skew = tx[b] * ty[a] - tx[a] * ty[b];
-                for j in 0..3 {
-                    // [t]^T m = m x t for each column m.
-                    let column = cross([inner[0][j], inner[1][j], inner[2][j]], t);
-                    for i in 0..3 {
-                        block[i][j] = c.mul_add(coupling[i][j], block[i][j] + column[i]);
-                    }
-                }
-                for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-                    block[j][i] = g[k].scale_add(skew, block[j][i]);
-                    block[i][j] = g[k].scale_add(-skew, block[i][j]);
-                }
+        }
+
+        // With [t] the matrix of the vector product: dn = -[r_y] dr_x + [r_x] dr_y, and n is bilinear: g . (dr_x x dr_y).
+        let (y_h, x_h) = (turned(y, &h), turned(x, &h));
+        let g = self.normal_derivative(v);
+        let mut xx = none;
+        let mut yy = none;
+        let mut xy = [[zero, g[2], -g[1]], [-g[2], zero, g[0]], [g[1], -g[0], zero]];
+        for i in 0..3 {
+            // Row i of m [t] is (row i of m) x t.
+            xx[i] = cross(y, y_h[i]);
+            yy[i] = cross(x, x_h[i]);
+            let row = cross(y_h[i], x);
+            for j in 0..3 {
+                xy[i][j] = xy[i][j] + row[j];
+            }
+        }
+        for c in 0..3 {
+            xx = add_outer(by_x[c], weighted_x[c], xx);
+            yy = add_outer(by_y[c], weighted_y[c], yy);
+            xy = add_outer(by_x[c], weighted_y[c], xy);
+        }
+        form[0] = xx;
+        form[1] = xy;
+        form[D + 1] = yy;
+
+        let n = self.scaled_normal();
+        let (y_f, x_f) = (turned(y, &f), turned(x, &f));
+        for c in 0..3 {
+            let moment = stress[c] * twice[c];
+            let normal = scale(zero.like(twice[c]), n);
+            let mut on_x = none;
+            let mut on_y = none;
+            for i in 0..3 {
+                on_x[i] = scale(moment, y_f[i]);
+                on_y[i] = scale(-moment, x_f[i]);
+            }
+            form[2 + c] = add_outer(weighted_x[c], normal, on_x);
+            form[D + 2 + c] = add_outer(weighted_y[c], normal, on_y);
+            for e in c..3 {
+                form[D * (2 + c) + 2 + e] = add_outer(normal, scale(weight[c][e] * twice[e], n), none);
             }
         }
     }
 }
 
-/// `along_y x - along_x y`.
+/// `[t] m` for a symmetric `m`, where `[t]` is the matrix of the vector product with `t` from the left.
 #[inline(always)]
-fn lever<S: Simd>(along_y: f64, x: Vector<S>, along_x: f64, y: Vector<S>) -> Vector<S> {
-    sub([x[0] * along_y, x[1] * along_y, x[2] * along_y], [y[0] * along_x, y[1] * along_x, y[2] * along_x])
+fn turned<S: Simd>(t: Vector<S>, m: &Block<S>) -> Block<S> {
+    let columns = [cross(t, m[0]), cross(t, m[1]), cross(t, m[2])];
+    let mut rows = columns;
+    for i in 0..3 {
+        for j in 0..3 {
+            rows[i][j] = columns[j][i];
+        }
+    }
+    rows
 }

@@ -2,8 +2,8 @@
 
 use pulp::Simd;
 
-use super::{Block, Measure, packed};
-use crate::lanes::{Lanes, Vector, axpy, dot, scale, table_axpy};
+use super::{Block, Measure, add_outer};
+use crate::lanes::{Lanes, Vector, axpy, dot, scale};
 
 /// `r_x . r_x / 2`, `r_y . r_y / 2` and `r_x . r_y` for the gradients `r_x`, `r_y`.
 ///
@@ -39,29 +39,30 @@ impl<S: Simd> Measure<S, 2, 3> for Metric<S> {
         [axpy(xx, self.x, scale(xy, self.y)), axpy(yy, self.y, scale(xy, self.x))]
     }
 
+    /// The strains change with `r_x` by `(r_x, 0, r_y)` and with `r_y` by `(0, r_y, r_x)`; their second derivatives are
+    /// multiples of the identity.
     #[inline(always)]
-    fn row(&self, [tx, ty]: [f64; 2]) -> [Vector<S>; 3] {
-        let scaled = |factor: f64, v: Vector<S>| [v[0] * factor, v[1] * factor, v[2] * factor];
-        [scaled(tx, self.x), scaled(ty, self.y), table_axpy(tx, self.y, scaled(ty, self.x))]
+    fn stiffness(&self, weight: &[[Lanes<S>; 3]; 3], stress: [Lanes<S>; 3], form: &mut [Block<S>]) {
+        let (x, y) = (self.x, self.y);
+        let shear = mix(weight[2][2], x, weight[2][1], y);
+        let [xx, yy, xy] = stress;
+        let on_x = add_outer(y, mix(weight[2][0], x, weight[2][2], y), diagonal(xx));
+        let on_y = add_outer(x, shear, diagonal(yy));
+        form[0] = add_outer(x, mix(weight[0][0], x, weight[0][2], y), on_x);
+        form[1] = add_outer(x, mix(weight[0][2], x, weight[0][1], y), add_outer(y, shear, diagonal(xy)));
+        form[3] = add_outer(y, mix(weight[1][2], x, weight[1][1], y), on_y);
     }
+}
 
-    #[inline(always)]
-    fn add_second<const N: usize>(
-        &self,
-        [xx, yy, xy]: [Lanes<S>; 3],
-        [tx, ty]: &[[f64; N]; 2],
-        blocks: &mut [Block<S>],
-    ) {
-        for b in 0..N {
-            let along_x = xy.scale_add(ty[b], xx * tx[b]);
-            let along_y = yy.scale_add(ty[b], xy * tx[b]);
-            for a in 0..=b {
-                let value = along_y.scale_add(ty[a], along_x * tx[a]);
-                let block = &mut blocks[packed(a, b)];
-                for (i, row) in block.iter_mut().enumerate() {
-                    row[i] = row[i] + value;
-                }
-            }
-        }
-    }
+/// `by_x x + by_y y`.
+#[inline(always)]
+fn mix<S: Simd>(by_x: Lanes<S>, x: Vector<S>, by_y: Lanes<S>, y: Vector<S>) -> Vector<S> {
+    axpy(by_x, x, scale(by_y, y))
+}
+
+/// `value` times the identity.
+#[inline(always)]
+fn diagonal<S: Simd>(value: Lanes<S>) -> Block<S> {
+    let zero = value.like(0.0);
+    [[value, zero, zero], [zero, value, zero], [zero, zero, value]]
 }

@@ -1,14 +1,14 @@
 //! Strain measures: what a sample of the strain is, as a function of a few gradient vectors at its point.
 //!
-//! A measure says value, first and second derivative; force, tangent and everything built on them follow in
-//! `element::kernel`, once for all measures.
+//! A measure says value, first and second derivative with respect to the gradient vectors; force, tangent and
+//! everything built on them follow in `element::kernel`, once for all measures.
 
 mod curvature;
 mod metric;
 
 use pulp::Simd;
 
-use crate::lanes::{Lanes, Vector};
+use crate::lanes::{Lanes, Vector, axpy};
 
 pub use curvature::{Curvature, CurvatureLaw};
 pub use metric::Metric;
@@ -39,9 +39,13 @@ pub trait Measure<S: Simd, const D: usize, const C: usize>: Copy {
     /// The derivative of `stress . strain` with respect to each gradient vector.
     fn forces(&self, stress: [Lanes<S>; C]) -> [Vector<S>; D];
 
-    /// The derivative of each component with respect to a nodal vector whose table entries are `table`.
-    fn row(&self, table: [f64; D]) -> [Vector<S>; C];
+    /// The second derivative of `1/2 strain . weight strain` with respect to the gradient vectors, where `stress` stands
+    /// for `weight strain`: the block of the vectors `d <= e` goes to `form[d * D + e]`.
+    fn stiffness(&self, weight: &[[Lanes<S>; C]; C], stress: [Lanes<S>; C], form: &mut [Block<S>]);
+}
 
-    /// Adds the second derivative of `stress . strain` with respect to all nodal vectors to the packed `blocks`.
-    fn add_second<const N: usize>(&self, stress: [Lanes<S>; C], tables: &[[f64; N]; D], blocks: &mut [Block<S>]);
+/// `a b^T + block`.
+#[inline(always)]
+fn add_outer<S: Simd>(a: Vector<S>, b: Vector<S>, block: Block<S>) -> Block<S> {
+    [axpy(a[0], b, block[0]), axpy(a[1], b, block[1]), axpy(a[2], b, block[2])]
 }
