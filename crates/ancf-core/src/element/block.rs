@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::lanes::{Lanes, MAX_LANES, Vector};
+use crate::lanes::{Lanes, MAX_LANES, Vector, arch};
 use crate::strain::{self, packed};
 
 use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
@@ -85,7 +85,7 @@ impl<const N: usize> Block<N> {
             })
             .collect();
         let couplings = couplings(&tables, &classes);
-        Self { arch: Arch::new(), tables, couplings, classes, class_of, vectors }
+        Self { arch: arch(vectors.len()), tables, couplings, classes, class_of, vectors }
     }
 }
 
