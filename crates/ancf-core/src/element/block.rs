@@ -3,7 +3,7 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::lanes::{Lanes, MAX_LANES, Vector};
+use crate::lanes::{Lanes, MAX_LANES, Vector, arch};
 use crate::strain::{self, packed};
 
 use super::classes::Classes;
@@ -78,7 +78,7 @@ impl<const N: usize> Block<N> {
             .collect();
         let classes = classes.finish();
         let couplings = couplings(&tables, &classes);
-        Self { arch: Arch::new(), tables, couplings, classes, class_of, vectors }
+        Self { arch: arch(vectors.len()), tables, couplings, classes, class_of, vectors }
     }
 }
 
