@@ -1,4 +1,5 @@
-//! Loads that follow the surface: pressure and edge moments, with the symmetric part of their stiffness.
+//! Loads that follow the surface: pressure and edge moments. The symmetric half of their stiffness enters the tangent, the
+//! skew half acts on vectors.
 
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
@@ -109,6 +110,44 @@ impl Follower {
                 }
             }
         });
+    }
+
+    /// Adds `factor` times the skew part of the load's derivative, times `x`, to `y`.
+    pub fn add_skew_times(
+        &self,
+        elements: &dyn ElementBlock,
+        reference: &[f64],
+        q: &[f64],
+        factor: f64,
+        x: &[f64],
+        y: &mut [f64],
+    ) {
+        for element in (0..self.loaded.len()).filter(|e| self.loaded[*e]) {
+            let vectors = elements.vectors(element);
+            for point in &self.points {
+                let Stiffness { r, x: on_x, y: on_y } = self.conjugates(point, vectors, reference, q, factor).1;
+                let tables = [&point.value, &point.x, &point.y];
+                let [value, by_x, by_y] = tables.map(|table| interpolate(table, vectors, x));
+                // The skew half of [[0, r_x, r_y], [0, x_x, x_y], [0, y_x, y_y]], which couples r, r_x and r_y.
+                let parts = [
+                    r[0] * by_x + r[1] * by_y,
+                    on_x[0] * by_x + on_x[1] * by_y
+                        - r[0].transpose() * value
+                        - on_x[0].transpose() * by_x
+                        - on_y[0].transpose() * by_y,
+                    on_y[0] * by_x + on_y[1] * by_y
+                        - r[1].transpose() * value
+                        - on_x[1].transpose() * by_x
+                        - on_y[1].transpose() * by_y,
+                ];
+                for (a, vector) in vectors.iter().enumerate() {
+                    let part = 0.5 * (parts[0] * point.value[a] + parts[1] * point.x[a] + parts[2] * point.y[a]);
+                    for (sum, number) in y[3 * *vector as usize..][..3].iter_mut().zip(&part) {
+                        *sum += number;
+                    }
+                }
+            }
+        }
     }
 
     /// What the load does work on at a point: vectors conjugate to r, r_x and r_y, and their derivatives.

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use nalgebra::Vector3;
 
 use crate::element::{ElementBlock, Outcome, Want};
-use crate::linear::{Factorization, Inertia, LinearError, Pattern, SymmetricMatrix};
+use crate::linear::{Factorization, Inertia, LinearError, Pattern, SymmetricMatrix, gmres};
 use crate::mesh::Place;
 use crate::model::{History, LoadKind, Model};
 use crate::quadrature::Rule;
@@ -49,6 +49,11 @@ impl StrainEnergy {
     }
 }
 
+/// Accuracy of solutions with the skew part of the followers: Newton corrects what is left.
+const SKEW_TOLERANCE: f64 = 1e-8;
+/// Most products with the skew part in a solution.
+const SKEW_PRODUCTS: usize = 40;
+
 /// A load that does not depend on the state.
 struct Dead {
     history: History,
@@ -68,6 +73,8 @@ pub struct System {
     weight: Vec<f64>,
     dead: Vec<Dead>,
     followers: Vec<Follower>,
+    /// The state of the last tangent, for the skew part of the followers: coordinates, and the factor of each load.
+    tangent_at: (Vec<f64>, Vec<f64>),
     outcomes: Vec<Outcome>,
     values: Vec<f64>,
     factorization: Factorization,
@@ -95,6 +102,7 @@ impl System {
             outcomes: vec![Outcome::default(); blocks.len()],
             dead: Vec::new(),
             followers: Vec::new(),
+            tangent_at: (Vec::new(), Vec::new()),
             factorizations: 0,
             timers: Timers::default(),
             model,
@@ -257,15 +265,42 @@ impl System {
         }
     }
 
+    /// Work of the loads, held as they are at `t`, on the way between two states whose coordinates change at the rates
+    /// `p0` and `p1` there, per unit of a parameter that runs from 0 to 1.
+    ///
+    /// Exact for dead loads. For a follower it is that of the mean force on the straight way, unless the rates of work
+    /// at both ends bound it: a moment that turns an edge does the same work in each part of the way, and the straight
+    /// way is too short.
+    pub(crate) fn work(&self, t: f64, [q0, q1]: [&[f64]; 2], [p0, p1]: [&[f64]; 2]) -> f64 {
+        let along = |force: &[f64], p: &[f64]| force.iter().zip(p).map(|(f, p)| f * p).sum::<f64>();
+        let straight: Vec<f64> = q0.iter().zip(q1).map(|(a, b)| b - a).collect();
+        let dead = self.dead.iter().map(|load| load.history.factor(t) * along(&load.force, &straight));
+        let followers = self.followers.iter().map(|load| {
+            let [start, end] = [q0, q1].map(|q| {
+                let mut force = vec![0.0; q.len()];
+                let elements = self.blocks[load.block].as_ref();
+                load.add_force(elements, self.model.reference(), q, load.history.factor(t), &mut force);
+                force
+            });
+            let mean = 0.5 * (along(&start, &straight) + along(&end, &straight));
+            let (a, b) = (along(&start, p0), along(&end, p1));
+            mean.clamp(a.min(b), a.max(b))
+        });
+        dead.chain(followers).sum()
+    }
+
     /// Elastic force as [`internal_force`](Self::internal_force), and the tangent `want.mass M + want.stiffness (dQ_k/dq
     /// - dQ_e/dq)`, which is kept for [`factorize`](Self::factorize). Of the loads' part it is the symmetric half.
     pub fn assemble(&mut self, q: &[f64], t: f64, want: Want<'_>, force: &mut [f64]) -> StrainEnergy {
         let start = Instant::now();
         self.evaluate(q, Some(want));
         self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
-        for load in &self.followers {
+        if !self.followers.is_empty() {
+            let factors = self.followers.iter().map(|load| want.stiffness * load.history.factor(t));
+            self.tangent_at = (q.to_vec(), factors.collect());
+        }
+        for (load, &factor) in self.followers.iter().zip(&self.tangent_at.1) {
             let elements = self.blocks[load.block].as_ref();
-            let factor = want.stiffness * load.history.factor(t);
             load.subtract_stiffness(elements, self.model.reference(), q, factor, &mut self.outcomes[load.block]);
         }
         self.scatter.sum(&self.blocks, &self.outcomes, &mut self.values);
@@ -307,15 +342,34 @@ impl System {
     }
 
     /// Solves for the free coordinates: `solution = tangent^-1 right`, zero where fixed.
+    ///
+    /// The factorised tangent has the symmetric half of the loads' part only. The skew half is brought in by GMRES with
+    /// the factorised tangent as preconditioner; its eigenvalues then lie around 1 on a line, so a few products suffice.
     pub fn solve(&mut self, right: &[f64], solution: &mut [f64]) {
         let start = Instant::now();
-        for (value, &coordinate) in self.free.iter_mut().zip(&self.numbering.coordinate) {
-            *value = right[coordinate];
-        }
-        self.factorization.solve(&mut self.free);
+        let Self { numbering, factorization, free, followers, tangent_at: (at, factors), blocks, model, .. } = self;
+        let mut solve = |right: &[f64], solution: &mut [f64]| {
+            for (value, &coordinate) in free.iter_mut().zip(&numbering.coordinate) {
+                *value = right[coordinate];
+            }
+            factorization.solve(free);
+            for (value, &coordinate) in free.iter().zip(&numbering.coordinate) {
+                solution[coordinate] = *value;
+            }
+        };
         solution.fill(0.0);
-        for (value, &coordinate) in self.free.iter().zip(&self.numbering.coordinate) {
-            solution[coordinate] = *value;
+        solve(right, solution);
+        if factors.iter().any(|factor| *factor != 0.0) {
+            let mut skew = vec![0.0; right.len()];
+            let with_skew = |x: &[f64], y: &mut [f64]| {
+                skew.fill(0.0);
+                for (load, factor) in followers.iter().zip(factors.iter()) {
+                    load.add_skew_times(blocks[load.block].as_ref(), model.reference(), at, -factor, x, &mut skew);
+                }
+                solve(&skew, y);
+                y.iter_mut().zip(x).for_each(|(y, x)| *y += x);
+            };
+            gmres(with_skew, solution, SKEW_TOLERANCE, SKEW_PRODUCTS);
         }
         self.timers.solve += start.elapsed();
     }

@@ -6,6 +6,7 @@
 
 mod error;
 mod factor;
+mod gmres;
 mod ordering;
 mod pattern;
 mod sparse;
@@ -15,6 +16,7 @@ mod testing;
 
 pub use error::LinearError;
 pub use factor::{Factorization, Inertia};
+pub use gmres::gmres;
 pub use ordering::order;
 pub use pattern::Pattern;
 pub use sparse::SymmetricMatrix;

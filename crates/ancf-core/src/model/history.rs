@@ -43,6 +43,12 @@ impl History {
             }
         }
     }
+
+    /// Where the factor changes its slope.
+    pub fn kinks(&self) -> impl Iterator<Item = f64> {
+        let rows = if let Self::Table(rows) = self { rows.as_slice() } else { &[] };
+        rows.iter().map(|row| row[0])
+    }
 }
 
 #[cfg(test)]

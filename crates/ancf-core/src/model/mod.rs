@@ -118,6 +118,15 @@ impl Model {
         &self.loads
     }
 
+    /// The times, or load factors, strictly between two at which a load changes its rate, in the order they are met.
+    pub fn kinks(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
+        let between = |t: &f64| from.min(to) < *t && *t < from.max(to);
+        let mut kinks: Vec<f64> = self.loads.iter().flat_map(|load| load.history.kinks()).filter(between).collect();
+        kinks.sort_by(|a, b| ((a - from).abs()).total_cmp(&(b - from).abs()));
+        kinks.dedup();
+        kinks.into_iter()
+    }
+
     /// The nodal coordinates at rest.
     pub fn reference(&self) -> &[f64] {
         &self.reference

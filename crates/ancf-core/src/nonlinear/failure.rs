@@ -54,10 +54,15 @@ pub enum Failure {
         motions: String,
     },
     /// The solution found is not the next one on the path: it is too far away.
-    #[error("the solution found is {increment:.2} away from the last one (gradients), not connected to it")]
+    #[error(
+        "the solution found moves along the load {progress:.2} times as far as predicted, its energy is off by \
+         {mismatch:.2} of the work: another branch"
+    )]
     Disconnected {
-        /// Largest change of a gradient, relative to its reference size.
-        increment: f64,
+        /// Displacement along the load's change, relative to the one that the tangent predicted.
+        progress: f64,
+        /// Gain of strain energy less the expected work, relative to the work of the load's change.
+        mismatch: f64,
     },
     /// The equilibrium is not stable.
     #[error("the equilibrium is unstable: {negative} negative pivots")]

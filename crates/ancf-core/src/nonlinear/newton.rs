@@ -1,6 +1,6 @@
 //! Newton's method, plain and with mixed integration points.
 
-use crate::assembly::{StrainEnergy, System};
+use crate::assembly::System;
 use crate::element::Want;
 use crate::error::InputError;
 use crate::observe::Observer;
@@ -57,10 +57,13 @@ impl Options {
 pub struct Report {
     /// Newton iterations.
     pub iterations: usize,
+    /// Largest ratio of a correction, if it is above rounding, to the one before: Newton's method that starts near the
+    /// solution has less than one.
+    pub growth: f64,
     /// Negative pivots of the last tangent.
     pub negative_pivots: usize,
-    /// Strain energy at the last evaluation of the forces, which is one correction before the solution.
-    pub strain: StrainEnergy,
+    /// Strain energy of the solution, J.
+    pub energy: f64,
 }
 
 /// A Newton solver: settings and working memory.
@@ -80,6 +83,8 @@ pub struct Newton {
 const ABSURD: f64 = 1e3;
 /// Corrections below this that no longer shrink are rounding.
 const ROUNDING: f64 = 1e-6;
+/// Iterations without progress after which there will be none.
+const HOPELESS: usize = 6;
 /// The energy of a correction, relative to the first one, that goes with convergence.
 const ENERGY: f64 = 1e-6;
 
@@ -136,6 +141,7 @@ impl Newton {
         let mut stalled = 0;
         let mut small = false;
         let mut size = f64::INFINITY;
+        let mut growth: f64 = 0.0;
         for iteration in 1..=max_iterations {
             if observer.stop() {
                 return Err(Failure::Stopped);
@@ -152,7 +158,11 @@ impl Newton {
                 system.factorize().map_err(|e| Failure::from_linear(e, iteration, |row| system.describe(row)))?;
             system.solve(&self.residual, &mut self.correction);
 
+            let before = size;
             size = self.correction.iter().zip(&self.scale).map(|(d, s)| d.abs() / s).fold(0.0, f64::max);
+            if size > ROUNDING {
+                growth = growth.max(size / before);
+            }
             if !size.is_finite() {
                 return Err(Failure::NotFinite { iteration });
             }
@@ -173,12 +183,19 @@ impl Newton {
             let settled = energy <= ENERGY * first_energy || small;
             small = size <= tolerance;
             if small && settled {
-                return Ok(Report { iterations: iteration, negative_pivots: inertia.negative, strain });
+                // The energy was evaluated one correction before the solution.
+                let change: f64 = self.correction.iter().zip(&self.internal).map(|(d, f)| d * f).sum();
+                let negative_pivots = inertia.negative;
+                let energy = strain.total() - change;
+                return Ok(Report { iterations: iteration, growth, negative_pivots, energy });
             }
             stalled = if size < 0.5 * smallest { 0 } else { stalled + 1 };
             smallest = smallest.min(size);
             if smallest < ROUNDING && stalled >= 4 {
                 return Err(Failure::BelowRounding { floor: smallest, tolerance });
+            }
+            if stalled >= HOPELESS {
+                return Err(Failure::NotConverged { iterations: iteration, correction: size });
             }
         }
         Err(Failure::NotConverged { iterations: max_iterations, correction: size })

@@ -1,0 +1,148 @@
+//! Load control: equilibria at given load factors, in steps of adaptive size, each connected to the one before.
+//!
+//! Newton's method can converge to a stable equilibrium of another branch. Between stable equilibria of one branch the
+//! displacement along the load grows with the load, and the strain energy gained is the work done on the way. The slopes
+//! of load over displacement at both ends of a step tell how much that should be, and a step whose end lies far from
+//! where its tangent points says too little about the way to be trusted.
+
+use crate::nonlinear::{Failure, Problem};
+use crate::observe::Observer;
+
+use super::Options;
+use super::path::{Load, Path, Point};
+
+/// Displacement along the load's change relative to its prediction. Below, a structure that seems to stiffen may as well
+/// be on another branch: a cantilever of one element with full quadrature, whose membrane locks, has one at 0.04. Above,
+/// it softens as before a limit point.
+const PROGRESS: [f64; 2] = [0.1, 3.0];
+/// A solution that falls short of its prediction by more than this must have been found without detours: the same
+/// cantilever of two elements has another branch at 0.31, to which Newton's method comes by a correction that is 8 times
+/// the one before.
+const NEAR: f64 = 0.5;
+/// Growth of a correction that is a detour.
+const GROWTH: f64 = 2.0;
+/// Largest difference between the gain of strain energy and the expected work, relative to the work of the load's change.
+/// Steps of cantilevers and plates, up to those that are 0.1 of their prediction, stay below 0.06.
+const MISMATCH: f64 = 0.1;
+/// Energies are known to this accuracy only.
+const ROUNDING: f64 = 1e-10;
+/// The number of iterations that a step should take.
+const ITERATIONS: f64 = 8.0;
+
+/// Follows the path through the load factors.
+pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
+    let mut step = f64::INFINITY;
+    if path.initial.iter().any(|f| *f != 0.0) {
+        reach(path, Load::default(), options, &mut step, observer)?;
+    }
+    path.at.load.held = 0.0;
+    path.output(observer);
+    step = options.first_step.unwrap_or(f64::INFINITY);
+    for &t in &options.load_factors {
+        for t in path.system.model().kinks(path.at.load.t, t).chain([t]) {
+            reach(path, Load { t, held: 0.0 }, options, &mut step, observer)?;
+        }
+        path.output(observer);
+    }
+    Ok(())
+}
+
+/// Follows the path to a load, in steps of at most `step`, which is adapted.
+fn reach(
+    path: &mut Path<'_>,
+    target: Load,
+    options: &Options,
+    step: &mut f64,
+    observer: &mut dyn Observer,
+) -> Result<(), Failure> {
+    // Changes of the coordinates, per length of step, that the tangent at the last point predicts.
+    let mut rate = None;
+    while path.at.load != target {
+        let from = path.at.load;
+        let left = (target.t - from.t).abs() + (target.held - from.held).abs();
+        let length = if *step >= 0.999 * left { left } else { *step };
+        let to = from.towards(target, length / left);
+        let change = path.change(&path.at.q, to);
+        let rate_here = rate.get_or_insert_with(|| {
+            let mut rate = vec![0.0; change.len()];
+            path.system.solve(&change, &mut rate);
+            rate.iter_mut().for_each(|v| *v /= length);
+            rate
+        });
+        let predicted: Vec<f64> = rate_here.iter().map(|v| v * length).collect();
+        match advance(path, to, &change, &predicted, observer) {
+            Ok(iterations) => {
+                path.steps += 1;
+                *step = length * (ITERATIONS / iterations as f64).powi(2).clamp(0.5, 4.0);
+                rate = None;
+                observer.reached(path.at.load.t);
+            }
+            Err(failure @ (Failure::Stopped | Failure::TooLarge | Failure::BelowRounding { .. })) => {
+                return Err(failure);
+            }
+            Err(failure) => {
+                path.rejected += 1;
+                *step = length
+                    * match failure {
+                        Failure::Disconnected { progress, .. } => (progress / PROGRESS[0]).clamp(1e-2, 0.5),
+                        _ => 0.5,
+                    };
+                if *step < options.min_step {
+                    return Err(failure);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Solves at another load and accepts the solution, or leaves the path as it was. Returns the number of iterations.
+fn advance(
+    path: &mut Path<'_>,
+    to: Load,
+    change: &[f64],
+    predicted: &[f64],
+    observer: &dyn Observer,
+) -> Result<usize, Failure> {
+    let from = &path.at;
+    let mut q: Vec<f64> = from.q.iter().zip(predicted).map(|(q, p)| q + p).collect();
+    let zeros = vec![0.0; q.len()];
+    let held: Vec<f64> = path.initial.iter().map(|f| to.held * f).collect();
+    let problem = Problem { t: to.t, mass: 0.0, stiffness: 1.0, origin: &zeros, constant: &held };
+    let report = path.newton.solve(path.system, &problem, &mut q, Some(&from.q), observer)?;
+    let negative = report.negative_pivots;
+    if negative > 0 {
+        return Err(Failure::Unstable { negative });
+    }
+
+    let end_change = path.change(&q, to);
+    let mut slope = zeros;
+    path.system.solve(&end_change, &mut slope);
+    let work = |load: Load| {
+        let released: f64 = (0..q.len()).map(|i| -load.held * path.initial[i] * (q[i] - from.q[i])).sum();
+        released + path.system.work(load.t, [&from.q, &q], [predicted, &slope])
+    };
+    let start = work(from.load);
+    let added = work(to) - start;
+    let rates = [product(change, predicted), product(&end_change, &slope)];
+    let [progress, backward] = rates.map(|rate| if rate == 0.0 { 1.0 } else { added / rate });
+    // Share of `added` that is work when the load changes with the displacement as its slopes at both ends say: exact to
+    // third order for small steps, and close to u^k -> 1 / (k + 1) for a load that grows with a power k.
+    let share = 0.5 + 0.5 * (progress - backward) / (progress + backward + 4.0);
+    let expected = start + share * added;
+    let gained = report.energy - from.energy;
+    let mismatch = (gained - expected) / added;
+    let slack = ROUNDING * (report.energy + from.energy);
+    let near = (PROGRESS[0]..=PROGRESS[1]).contains(&progress) && (progress >= NEAR || report.growth <= GROWTH);
+    if !near || (gained - expected).abs() > MISMATCH * added.abs() + slack {
+        return Err(Failure::Disconnected { progress, mismatch });
+    }
+    // On the way between two equilibria of one branch the work is the gain of strain energy.
+    path.work += gained;
+    path.at = Point { load: to, q, energy: report.energy, negative_pivots: negative };
+    Ok(report.iterations)
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

@@ -1,0 +1,118 @@
+//! A path of equilibria: the point it has reached and what is known there.
+
+use crate::assembly::System;
+use crate::element::Want;
+use crate::nonlinear::{Failure, Newton, Options as NewtonOptions};
+use crate::observe::{Observer, State};
+use crate::report::Counts;
+
+/// Where the loads are on their way.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Load {
+    /// The load factor.
+    pub t: f64,
+    /// The share of the unbalanced force at the start, of loads that do not vanish at load factor 0, that is still held
+    /// back.
+    pub held: f64,
+}
+
+impl Load {
+    /// The load at `share` of the way to another one.
+    pub fn towards(self, to: Self, share: f64) -> Self {
+        let between = |a: f64, b: f64| if share == 1.0 { b } else { a + share * (b - a) };
+        Self { t: between(self.t, to.t), held: between(self.held, to.held) }
+    }
+}
+
+/// An equilibrium on the path.
+pub(super) struct Point {
+    pub load: Load,
+    pub q: Vec<f64>,
+    /// Strain energy, J.
+    pub energy: f64,
+    /// Negative pivots of the tangent.
+    pub negative_pivots: usize,
+}
+
+/// The path so far. The tangent of its last point is factorised whenever a step begins.
+pub(super) struct Path<'a> {
+    pub system: &'a mut System,
+    pub newton: Newton,
+    pub at: Point,
+    /// Force of the loads at the start.
+    pub initial: Vec<f64>,
+    /// Work of the loads so far, J.
+    pub work: f64,
+    pub steps: usize,
+    pub rejected: usize,
+}
+
+impl<'a> Path<'a> {
+    /// A path that begins at rest, all loads held back.
+    pub fn new(system: &'a mut System, options: NewtonOptions) -> Self {
+        let newton = Newton::new(system, options);
+        let q = system.model().reference().to_vec();
+        let mut initial = vec![0.0; q.len()];
+        system.external_force(&q, 0.0, &mut initial);
+        let load = Load { t: 0.0, held: 1.0 };
+        let at = Point { load, q, energy: 0.0, negative_pivots: 0 };
+        Self { system, newton, at, initial, work: 0.0, steps: 0, rejected: 0 }
+    }
+
+    /// Checks that the supports suffice and factorises the tangent at rest.
+    pub fn begin(&mut self) -> Result<(), Failure> {
+        let motions = self.system.model().rigid_motions(&self.at.q);
+        if !motions.is_empty() {
+            let motions = motions.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+            return Err(Failure::Unsupported { motions });
+        }
+        self.linearize()
+    }
+
+    /// Factorises the tangent of the last point.
+    pub fn linearize(&mut self) -> Result<(), Failure> {
+        let Self { system, at, .. } = self;
+        let want = Want { mass: 0.0, stiffness: 1.0, previous: None };
+        system.assemble(&at.q, at.load.t, want, &mut vec![0.0; at.q.len()]);
+        system.factorize().map_err(|e| Failure::from_linear(e, 0, |row| system.describe(row)))?;
+        Ok(())
+    }
+
+    /// Change of the force at coordinates `q` from the load of the last point to another one.
+    pub fn change(&self, q: &[f64], to: Load) -> Vec<f64> {
+        let [mut now, mut next] = [vec![0.0; q.len()], vec![0.0; q.len()]];
+        self.system.external_force(q, self.at.load.t, &mut now);
+        self.system.external_force(q, to.t, &mut next);
+        let released = self.at.load.held - to.held;
+        for (i, force) in next.iter_mut().enumerate() {
+            *force += released * self.initial[i] - now[i];
+        }
+        next
+    }
+
+    /// What the path has taken.
+    pub fn counts(&self) -> Counts {
+        let (steps, rejected, iterations) = (self.steps, self.rejected, self.newton.iterations());
+        Counts { steps, rejected, iterations, ..Counts::default() }
+    }
+
+    /// Gives the last point to the observer.
+    pub fn output(&mut self, observer: &mut dyn Observer) {
+        let Point { load, ref q, negative_pivots, .. } = self.at;
+        let zeros = vec![0.0; q.len()];
+        let strain = self.system.internal_force(q, &mut zeros.clone());
+        observer.state(State {
+            t: load.t,
+            q: q.clone(),
+            v: zeros.clone(),
+            a: zeros,
+            strain,
+            kinetic: 0.0,
+            work: self.work,
+            momentum: [0.0; 3],
+            angular_momentum: [0.0; 3],
+            negative_pivots: Some(negative_pivots),
+        });
+        observer.reached(load.t);
+    }
+}
