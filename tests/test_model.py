@@ -167,3 +167,20 @@ def test_a_failed_run_keeps_what_it_had(pendulum: ancf.Model) -> None:
     assert len(result.t) == len(result.q) == len(result.probes["A"].value)
     same = ancf.simulate(pendulum, until=1.0, step=0.5, max_iterations=1, throw=False)
     assert (same.status, same.reached) == ("failed", result.reached)
+
+
+def test_no_load_and_hardly_any_are_solved(rubber: ancf.Material) -> None:
+    plate = ancf.Rectangle(size=(1.0, 0.2), divisions=(4, 1), thickness=0.01, material=rubber)
+    wall = ancf.Support(at="edge:x0", clamp=True)
+    for load in (0.0, 1e-15):
+        model = ancf.Model(
+            bodies={"plate": plate},
+            supports=[wall],
+            loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, load))],
+            probes=[ancf.Probe(name="tip", at=(1.0, 0.1), quantity="displacement")],
+        )
+        result = ancf.solve_static(model)
+        assert result.counts["steps"] == 1
+        # P L^3 / (3 E I), to the few per cent that a clamped plate of finite width is stiffer.
+        expected = load * 0.2 / (3 * 1e5 * 0.2 * 0.01**3 / 12)
+        assert result.probes["tip"].value[-1, 2] == pytest.approx(expected, rel=0.06, abs=1e-18)
