@@ -23,8 +23,8 @@ fn with_law(surface: &Surface, divisions: [usize; 2], curvature: CurvatureLaw) -
         material: Material::new(2.07e11, 0.3, DENSITY).unwrap(),
         thickness: THICKNESS,
         element: Kind::Thin36,
-        membrane: Membrane::Projected,
-        curvature,
+        membrane: Some(Membrane::Projected),
+        curvature: Some(curvature),
     };
     let mut model = Model::new();
     model.add_body("shell", surface, divisions, plate).unwrap();
