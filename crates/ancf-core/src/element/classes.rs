@@ -77,11 +77,12 @@ fn tolerance<const N: usize>(tables: &Tables<N>, constants: &Constants, thicknes
                 extend_packed(&mut tolerance, matrix, projection.modes.len());
             }
             Group::Membrane(_) => {
-                extend_points(&mut tolerance, values, COMPONENTS, |strain| stretched(strain).to_vec())
+                extend_points(&mut tolerance, values, COMPONENTS, |strain| stretched(strain).to_vec());
             }
-            // Curvatures are compared with those that strain the faces by one: a flat surface has only rounding here.
             Group::Bending(..) => {
-                extend_points(&mut tolerance, values, COMPONENTS, |_| metric.map(|strain| strain / thickness).to_vec())
+                // Compared with curvatures that strain the faces by one: a flat surface has only rounding here.
+                let scale = metric.map(|strain| strain / thickness);
+                extend_points(&mut tolerance, values, COMPONENTS, |_| scale.to_vec());
             }
             Group::Solid(_) => extend_points(&mut tolerance, values, SOLID_PAIRS.len(), |strain| {
                 SOLID_PAIRS.map(|(i, j)| 2.0 * (strain[i] * strain[j]).sqrt()).to_vec()
