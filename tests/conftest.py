@@ -38,7 +38,9 @@ def rubber() -> ancf.Material:
 @pytest.fixture
 def pendulum(rubber: ancf.Material) -> ancf.Model:
     """The scene pendulum.toml in Python."""
-    plate = ancf.Rectangle(size=(0.3, 0.3), divisions=(2, 2), thickness=0.01, material=rubber, membrane="full")
+    plate = ancf.Rectangle(
+        size=(0.3, 0.3), divisions=(2, 2), thickness=0.01, material=rubber, membrane="full", curvature="paper"
+    )
     return ancf.Model(
         bodies={"plate": plate},
         supports=[ancf.Support(at="corner:x0y0", fix=["r"])],

@@ -59,8 +59,8 @@ class Model:
         nu: float,
         density: float,
         element: str,
-        membrane: str,
-        curvature: str,
+        membrane: str | None,
+        curvature: str | None,
     ) -> None: ...
     def fix(self, body: str, at: _At, coordinates: Sequence[str]) -> None: ...
     def clamp(self, body: str, at: _At) -> None: ...

@@ -11,7 +11,12 @@ from ancf import _core
 from ancf.inputs import Input, Pair, PairOfInts, Point, Positive, table
 from ancf.materials import Material
 
-NODAL_VECTORS = {"thin36": ("r", "r_x", "r_y")}
+NODAL_VECTORS = {
+    "thin36": ("r", "r_x", "r_y"),
+    "thin48": ("r", "r_x", "r_y", "r_xy"),
+    "full48a": ("r", "r_x", "r_y", "r_z"),
+    "full48b": ("r", "r_x", "r_y", "r_z"),
+}
 
 
 class Plate(Input, ABC):
@@ -22,9 +27,9 @@ class Plate(Input, ABC):
     divisions: PairOfInts
     thickness: Positive
     material: Annotated[Material, PlainValidator(table(Material))]
-    element: Literal["thin36"] = "thin36"
-    membrane: Literal["projected", "full", "lobatto"] = "projected"
-    curvature: Literal["paper", "koiter"] = "paper"
+    element: Literal["thin36", "thin48", "full48a", "full48b"] = "thin36"
+    membrane: Literal["projected", "full", "lobatto"] | None = None
+    curvature: Literal["paper", "koiter"] | None = None
 
     @abstractmethod
     def reference(self) -> _core.Shape:
@@ -61,13 +66,16 @@ class Rectangle(Plate):
         m, greater than 0.
     material : Material
         What it is made of; in a scene file the name of a [material] table.
-    element : {"thin36"}, default "thin36"
-        Dufva and Shabana (2005), Appendix 2: r, r_x and r_y at each of four nodes.
-    membrane : {"projected", "full", "lobatto"}, default "projected"
-        How the membrane strain is sampled: "projected" bends without locking, "full" is the paper's, "lobatto" the
-        cheapest.
-    curvature : {"paper", "koiter"}, default "paper"
-        The measure of curvature: r_ab . n/abs(n)^3, Dufva and Shabana (2005), (32), or Koiter's r_ab . n/abs(n).
+    element : {"thin36", "thin48", "full48a", "full48b"}, default "thin36"
+        "thin36" is the plate of Dufva and Shabana (2005), Appendix 2, with r, r_x and r_y at each of four nodes;
+        "thin48" has r_xy besides and a continuous slope. "full48a" and "full48b" have r_z besides and are solids, for
+        comparison: they converge slowly when bent.
+    membrane : {"projected", "full", "lobatto"}, optional
+        How the membrane strain of a thin element is sampled: "projected", the default, bends without locking, "full" is
+        the paper's, "lobatto", for "thin36" only, the cheapest.
+    curvature : {"paper", "koiter"}, optional
+        The measure of curvature of a thin element: "paper", the default, is r_ab . n/abs(n)^3, Dufva and Shabana
+        (2005), (32), "koiter" r_ab . n/abs(n).
 
     Raises
     ------

@@ -10,15 +10,13 @@ use ancf_core::assembly::System;
 use ancf_core::element::{Kind, Membrane, Want};
 use ancf_core::mesh::Surface;
 use ancf_core::model::{Model, Plate};
-use ancf_core::strain::CurvatureLaw;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 
 const DIVISIONS: [usize; 2] = [64, 64];
 
 fn system(membrane: Membrane) -> System {
     let material = Material::new(1e5, 0.3, 7810.0).unwrap();
-    let plate =
-        Plate { material, thickness: 0.01, element: Kind::Thin36, membrane, curvature: CurvatureLaw::default() };
+    let plate = Plate { material, thickness: 0.01, element: Kind::Thin36, membrane: Some(membrane), curvature: None };
     let mut model = Model::new();
     model.add_body("plate", &Surface::rectangle([0.3, 0.3]).unwrap(), DIVISIONS, plate).unwrap();
     System::new(Arc::new(model)).unwrap()

@@ -11,12 +11,11 @@ use ancf_core::mesh::Surface;
 use ancf_core::model::{Fix, History, Load, LoadKind, Model, Plate};
 use ancf_core::report::Outcome;
 use ancf_core::statics;
-use ancf_core::strain::CurvatureLaw;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 fn plate(young: f64, thickness: f64, membrane: Membrane) -> Plate {
     let material = Material::new(young, 0.3, 7810.0).unwrap();
-    Plate { material, thickness, element: Kind::Thin36, membrane, curvature: CurvatureLaw::Paper }
+    Plate { material, thickness, element: Kind::Thin36, membrane: Some(membrane), curvature: None }
 }
 
 /// The rubber pendulum of Dufva and Shabana (2005), 0.3 x 0.3 x 0.01 m, a corner pinned, under gravity.

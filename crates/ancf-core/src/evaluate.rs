@@ -73,7 +73,7 @@ impl MaterialPoint {
     ///
     /// The point must lie in the body.
     pub fn new(model: &Model, body: BodyId, point: [f64; 2]) -> Result<Self, InputError> {
-        let law = model.body(body).plate().curvature;
+        let law = model.body(body).curvature();
         let (element, at) = model.body(body).grid().locate(point)?;
         let (vectors, tables) = model.body(body).shape(element, at);
         let reference = tables.each_ref().map(|table| interpolate(table, &vectors, model.reference()));

@@ -29,8 +29,8 @@
 //!     material: Material::new(2.07e11, 0.3, 7810.0)?,
 //!     thickness: 0.001,
 //!     element: Kind::Thin36,
-//!     membrane: Membrane::Projected,
-//!     curvature: CurvatureLaw::Paper,
+//!     membrane: Some(Membrane::Projected),
+//!     curvature: Some(CurvatureLaw::Paper),
 //! };
 //! let mut model = Model::new();
 //! let strip = model.add_body("strip", &Surface::rectangle([0.5, 0.15])?, [4, 1], plate)?;

@@ -1,6 +1,7 @@
 //! Material laws: the constant stiffness between strain and stress components.
 
 use crate::error::InputError;
+use crate::strain::{SOLID_PAIRS, SURFACE_PAIRS};
 
 /// A homogeneous, isotropic, linear elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,19 +50,37 @@ impl Material {
     ///
     /// # Source
     ///
-    /// Dufva and Shabana (2005), (28); the components in other frames by the tensor
-    /// `E / (1 - nu^2) [nu a^ab a^cd + (1 - nu)/2 (a^ac a^bd + a^ad a^bc)]`.
-    pub fn plane_stress(&self, metric: [f64; 3]) -> [[f64; 3]; 3] {
-        let a = [[metric[0], metric[2]], [metric[2], metric[1]]];
-        let scale = self.young / (1.0 - self.poisson * self.poisson);
-        let pairs = [(0, 0), (1, 1), (0, 1)];
-        pairs.map(|(i, j)| {
-            pairs.map(|(k, l)| {
-                let shear = a[i][k] * a[j][l] + a[i][l] * a[j][k];
-                scale * (self.poisson * a[i][j] * a[k][l] + 0.5 * (1.0 - self.poisson) * shear)
-            })
-        })
+    /// Dufva and Shabana (2005), (28).
+    pub fn plane_stress(&self, [xx, yy, xy]: [f64; 3]) -> [[f64; 3]; 3] {
+        let lambda = self.young * self.poisson / (1.0 - self.poisson * self.poisson);
+        isotropic(lambda, self.shear(), [[xx, xy], [xy, yy]], SURFACE_PAIRS)
     }
+
+    /// Hooke's stiffness (Pa) for covariant strain components `xx`, `yy`, `zz` and doubled `yz`, `xz`, `xy`, measured in
+    /// coordinates with the given contravariant metric.
+    ///
+    /// # Source
+    ///
+    /// Dufva and Shabana (2005), (14).
+    pub fn hooke(&self, metric: [[f64; 3]; 3]) -> [[f64; 6]; 6] {
+        let lambda = self.young * self.poisson / ((1.0 + self.poisson) * (1.0 - 2.0 * self.poisson));
+        isotropic(lambda, self.shear(), metric, SOLID_PAIRS)
+    }
+
+    /// The shear modulus, Pa.
+    fn shear(&self) -> f64 {
+        0.5 * self.young / (1.0 + self.poisson)
+    }
+}
+
+/// The tensor `lambda a^ij a^kl + mu (a^ik a^jl + a^il a^jk)` for pairs `ij`, `kl` of indices.
+fn isotropic<const DIM: usize, const C: usize>(
+    lambda: f64,
+    mu: f64,
+    a: [[f64; DIM]; DIM],
+    pairs: [(usize, usize); C],
+) -> [[f64; C]; C] {
+    pairs.map(|(i, j)| pairs.map(|(k, l)| lambda * a[i][j] * a[k][l] + mu * (a[i][k] * a[j][l] + a[i][l] * a[j][k])))
 }
 
 #[cfg(test)]

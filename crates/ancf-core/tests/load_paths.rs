@@ -9,7 +9,6 @@ use ancf_core::mesh::{Edge, Surface};
 use ancf_core::model::{BodyId, History, Load, LoadKind, Model, Plate};
 use ancf_core::observe::State;
 use ancf_core::report::{Outcome, Run};
-use ancf_core::strain::CurvatureLaw;
 use ancf_core::{Material, statics};
 
 const MEMBRANES: [Membrane; 3] = [Membrane::Full, Membrane::Lobatto, Membrane::Projected];
@@ -35,8 +34,8 @@ impl Strip {
             material: Material::new(self.e, self.nu, 1.0).unwrap(),
             thickness: self.thickness,
             element: Kind::Thin36,
-            membrane: self.membrane,
-            curvature: CurvatureLaw::Paper,
+            membrane: Some(self.membrane),
+            curvature: None,
         };
         let mut model = Model::new();
         let surface = Surface::rectangle(self.size).unwrap();

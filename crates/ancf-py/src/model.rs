@@ -128,15 +128,17 @@ impl Model {
         nu: f64,
         density: f64,
         element: &str,
-        membrane: &str,
-        curvature: &str,
+        membrane: Option<&str>,
+        curvature: Option<&str>,
     ) -> PyResult<()> {
         let plate = Plate {
             material: checked(py, Material::new(E, nu, density))?,
             thickness,
             element: named(py, "element", element, &Kind::ALL, Kind::name)?,
-            membrane: named(py, "membrane", membrane, &Membrane::ALL, Membrane::name)?,
-            curvature: named(py, "curvature", curvature, &CurvatureLaw::ALL, CurvatureLaw::name)?,
+            membrane: membrane.map(|name| named(py, "membrane", name, &Membrane::ALL, Membrane::name)).transpose()?,
+            curvature: curvature
+                .map(|name| named(py, "curvature", name, &CurvatureLaw::ALL, CurvatureLaw::name))
+                .transpose()?,
         };
         checked(py, self.edit().add_body(name, &shape.0, divisions, plate)).map(|_| ())
     }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::strain::packed;
+use crate::strain::{SOLID_PAIRS, packed};
 
 use super::constants::{COMPONENTS, Constants};
 use super::kernel::point_constants;
@@ -76,23 +76,17 @@ fn tolerance<const N: usize>(tables: &Tables<N>, constants: &Constants, thicknes
                 tolerance.extend(strains.chunks(COMPONENTS).flat_map(stretched));
                 extend_packed(&mut tolerance, matrix, projection.modes.len());
             }
-            Group::Membrane(_) | Group::Bending(..) => {
-                for point in values.chunks(point_constants(COMPONENTS)) {
-                    let (strain, weights) = point[1..].split_at(COMPONENTS);
-                    // Curvatures are compared with those that strain the faces by one: a flat surface has only
-                    // rounding here.
-                    let scale = match group {
-                        Group::Bending(..) => metric.map(|strain| strain / thickness),
-                        _ => stretched(strain),
-                    };
-                    let diagonal = |i: usize| weights[i * COMPONENTS + i];
-                    tolerance.push(point[0]);
-                    tolerance.extend(scale);
-                    for i in 0..COMPONENTS {
-                        tolerance.extend((0..COMPONENTS).map(|j| (diagonal(i) * diagonal(j)).sqrt()));
-                    }
-                }
+            Group::Membrane(_) => {
+                extend_points(&mut tolerance, values, COMPONENTS, |strain| stretched(strain).to_vec());
             }
+            Group::Bending(..) => {
+                // Compared with curvatures that strain the faces by one: a flat surface has only rounding here.
+                let scale = metric.map(|strain| strain / thickness);
+                extend_points(&mut tolerance, values, COMPONENTS, |_| scale.to_vec());
+            }
+            Group::Solid(_) => extend_points(&mut tolerance, values, SOLID_PAIRS.len(), |strain| {
+                SOLID_PAIRS.map(|(i, j)| 2.0 * (strain[i] * strain[j]).sqrt()).to_vec()
+            }),
         }
     }
     extend_packed(&mut tolerance, &constants.mass, N);
@@ -106,7 +100,7 @@ fn metric<const N: usize>(tables: &Tables<N>, constants: &Constants) -> [f64; CO
         match group {
             Group::Projected(..) => return stretched(&constants.values[start..]),
             Group::Membrane(_) => return stretched(&constants.values[start + 1..]),
-            Group::Bending(..) => start += group.constants(),
+            Group::Bending(..) | Group::Solid(_) => start += group.constants(),
         }
     }
     [1.0; COMPONENTS]
@@ -115,6 +109,19 @@ fn metric<const N: usize>(tables: &Tables<N>, constants: &Constants) -> [f64; CO
 /// The metric that strains are compared with, from half of it as the samples measure it at the first point.
 fn stretched(strain: &[f64]) -> [f64; COMPONENTS] {
     [strain[0], strain[1], 2.0 * (strain[0] * strain[1]).sqrt()]
+}
+
+/// Appends what the constants of points are compared with; `strain` gives it for their reference strain.
+fn extend_points(scales: &mut Vec<f64>, values: &[f64], components: usize, strain: impl Fn(&[f64]) -> Vec<f64>) {
+    for point in values.chunks(point_constants(components)) {
+        let (reference, weights) = point[1..].split_at(components);
+        let diagonal = |i: usize| weights[i * components + i];
+        scales.push(point[0]);
+        scales.extend(strain(reference));
+        for i in 0..components {
+            scales.extend((0..components).map(|j| (diagonal(i) * diagonal(j)).sqrt()));
+        }
+    }
 }
 
 /// Appends the geometric means of the diagonal entries of a packed matrix.

@@ -1,19 +1,19 @@
 //! What all elements with congruent reference shapes share: `eps_0`, `W` and the mass matrix.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use pulp::{Scalar, Simd};
 
 use crate::lanes::{Lanes, Vector};
 use crate::material::Material;
-use crate::strain::{Curvature, Measure, Metric, packed};
+use crate::strain::{Curvature, GreenLagrange, Measure, Metric, packed};
 
 use super::corners::combine_all;
 use super::tables::{Group, Samples, Tables};
 
 /// The numbers of one class of congruent elements, in the order in which the kernel reads them.
 ///
-/// For each group of samples that are weighted point by point: the reference area stretch `|R_x x R_y|`, the reference
-/// strain (C) and the weight (C x C) of each point. For a group with generalised strains: the reference strain of each
+/// For each group of samples that are weighted point by point: the reference area (or volume) stretch, the reference strain
+/// (C) and the weight (C x C) of each point. For a group with generalised strains: the reference strain of each
 /// point, then the packed matrix of the weights of the generalised strains.
 #[derive(Clone, Debug)]
 pub(crate) struct Constants {
@@ -52,16 +52,18 @@ impl Constants {
         let projected = tables.groups.iter().any(|group| matches!(group, Group::Projected(..)));
         let share = if projected { sampled_share(tables, reference, thickness) } else { 1.0 };
         let vectors = &combine_all(reference);
+        let surface = |gradients: &[Vector3<f64>]| plane_stress(material, &gradients[0], &gradients[1]);
         let mut values = Vec::new();
         for group in &tables.groups {
             match group {
                 Group::Membrane(samples) => {
-                    for point in points::<Metric<Scalar>, N, 2>(samples, (), vectors, material) {
+                    for point in points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)) {
                         point.append(share * membrane, &mut values);
                     }
                 }
                 Group::Projected(samples, projection) => {
-                    let points: Vec<_> = points::<Metric<Scalar>, N, 2>(samples, (), vectors, material).collect();
+                    let points: Vec<_> =
+                        points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)).collect();
                     values.extend(points.iter().flat_map(|point| point.strain));
                     for (l, second) in projection.modes.iter().enumerate() {
                         for first in &projection.modes[..=l] {
@@ -75,8 +77,14 @@ impl Constants {
                     }
                 }
                 Group::Bending(samples, law) => {
-                    for point in points::<Curvature<Scalar>, N, 5>(samples, *law, vectors, material) {
+                    for point in points::<Curvature<Scalar>, N, 5, 3>(samples, *law, vectors, |g| surface(g)) {
                         point.append(bending, &mut values);
+                    }
+                }
+                Group::Solid(samples) => {
+                    let solid = |gradients: &[Vector3<f64>; 3]| hooke(material, gradients);
+                    for point in points::<GreenLagrange<Scalar>, N, 3, 6>(samples, (), vectors, solid) {
+                        point.append(thickness, &mut values);
                     }
                 }
             }
@@ -85,8 +93,9 @@ impl Constants {
         let mut mass = vec![0.0; N * (N + 1) / 2];
         let mut weight = vec![0.0; N];
         for (shape, quadrature) in &tables.mass {
-            let area = interpolate(&shape.x, reference).cross(&interpolate(&shape.y, reference)).norm();
-            let factor = section.material.density() * section.thickness * area * quadrature;
+            let normal = interpolate(&shape.x, reference).cross(&interpolate(&shape.y, reference));
+            let stretch = shape.z.map_or(normal.norm(), |z| normal.dot(&interpolate(&z, reference)));
+            let factor = material.density() * thickness * stretch * quadrature;
             for b in 0..N {
                 weight[b] += factor * shape.value[b];
                 for a in 0..=b {
@@ -113,42 +122,53 @@ fn sampled_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], 
 }
 
 /// A sample in the reference state.
-struct Point {
-    area: f64,
-    strain: [f64; COMPONENTS],
-    /// Stiffness per thickness (or its third power over 12), times quadrature weight and area stretch.
-    weight: [[f64; COMPONENTS]; COMPONENTS],
+struct Point<const C: usize> {
+    /// Area (or volume) for a unit of the parameters.
+    stretch: f64,
+    strain: [f64; C],
+    /// Stiffness per thickness (or its third power over 12), times quadrature weight and stretch.
+    weight: [[f64; C]; C],
 }
 
-impl Point {
+impl<const C: usize> Point<C> {
     fn append(&self, factor: f64, values: &mut Vec<f64>) {
-        values.push(self.area);
+        values.push(self.stretch);
         values.extend(self.strain);
         values.extend(self.weight.iter().flatten().map(|c| factor * c));
     }
 }
 
-/// The points of a group of surface samples.
-fn points<M: Measure<Scalar, D, COMPONENTS>, const N: usize, const D: usize>(
+/// The points of a group of samples; `stiffness` gives stretch and material stiffness for the reference gradients.
+fn points<M: Measure<Scalar, D, C>, const N: usize, const D: usize, const C: usize>(
     samples: &Samples<N, D>,
     law: M::Law,
     reference: &[[f64; 3]; N],
-    material: Material,
-) -> impl Iterator<Item = Point> {
+    stiffness: impl Fn(&[Vector3<f64>; D]) -> (f64, [[f64; C]; C]),
+) -> impl Iterator<Item = Point<C>> {
     samples.tables.iter().zip(&samples.weights).map(move |(table, weight)| {
         let gradients = table.map(|row| interpolate(&row, reference));
-        let metric =
-            [gradients[0].dot(&gradients[0]), gradients[1].dot(&gradients[1]), gradients[0].dot(&gradients[1])];
-        let determinant = metric[0] * metric[1] - metric[2] * metric[2];
-        let area = determinant.sqrt();
-        let stiffness =
-            material.plane_stress([metric[1] / determinant, metric[0] / determinant, -metric[2] / determinant]);
-
+        let (stretch, stiffness) = stiffness(&gradients);
         let splat = |x: f64| Lanes::splat(Scalar::new(), x);
         let lanes: [Vector<Scalar>; D] = gradients.map(|g| [splat(g.x), splat(g.y), splat(g.z)]);
-        let strain = M::new(law, lanes, splat(area)).strain().map(Lanes::value);
-        Point { area, strain, weight: stiffness.map(|row| row.map(|c| area * weight * c)) }
+        let strain = M::new(law, lanes, splat(stretch)).strain().map(Lanes::value);
+        Point { stretch, strain, weight: stiffness.map(|row| row.map(|c| stretch * weight * c)) }
     })
+}
+
+/// Area stretch and plane-stress stiffness for the reference gradients of a surface.
+fn plane_stress(material: Material, x: &Vector3<f64>, y: &Vector3<f64>) -> (f64, [[f64; 3]; 3]) {
+    let metric = [x.dot(x), y.dot(y), x.dot(y)];
+    let determinant = metric[0] * metric[1] - metric[2] * metric[2];
+    let inverse = [metric[1] / determinant, metric[0] / determinant, -metric[2] / determinant];
+    (determinant.sqrt(), material.plane_stress(inverse))
+}
+
+/// Volume stretch and Hooke's stiffness for the reference gradients of a solid.
+fn hooke(material: Material, gradients: &[Vector3<f64>; 3]) -> (f64, [[f64; 6]; 6]) {
+    let jacobian = Matrix3::from_columns(gradients);
+    let inverse = jacobian.try_inverse().expect("r_x and r_y span a plane, r_z points along its normal");
+    let metric = inverse * inverse.transpose();
+    (jacobian.determinant(), material.hooke([0, 1, 2].map(|i| [0, 1, 2].map(|j| metric[(i, j)]))))
 }
 
 /// `sum_a table_a e_a`.

@@ -5,7 +5,7 @@
 use pulp::Simd;
 
 use crate::lanes::{Lanes, Vector, table_axpy};
-use crate::strain::{Block, Curvature, Measure, Metric};
+use crate::strain::{Block, Curvature, GreenLagrange, Measure, Metric};
 
 use super::constants::Couplings;
 use super::projected;
@@ -26,7 +26,7 @@ pub(crate) struct Batch<'a, S: Simd, const N: usize> {
 
 /// What a batch gives; each part is added to.
 pub(crate) struct Totals<S: Simd, const N: usize> {
-    /// Membrane and bending energy.
+    /// Membrane and bending energy; that of a solid counts as the first.
     pub energy: [Lanes<S>; 2],
     /// Elastic force on each vector.
     pub force: [Vector<S>; N],
@@ -92,6 +92,9 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
                 }
                 Group::Bending(samples, law) => {
                     self.samples::<Curvature<S>, 5, 3>(samples, *law, own, 1, totals, tangent);
+                }
+                Group::Solid(samples) => {
+                    self.samples::<GreenLagrange<S>, 3, 6>(samples, (), own, 0, totals, tangent);
                 }
             }
         }

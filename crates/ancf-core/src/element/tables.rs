@@ -1,89 +1,11 @@
 //! What all elements with the same sides in their parameters share.
 
-use crate::mesh::SurfacePoint;
-use crate::shape::{Polynomial, acm};
-use crate::strain::CurvatureLaw;
+use crate::shape::Polynomial;
+use crate::strain::{CurvatureLaw, SOLID_PAIRS};
 
 use super::constants::COMPONENTS;
 use super::kernel::{AT_ONCE, point_constants};
 use super::projection::{MODES, Projection};
-
-/// The element types, by the names that scenes use.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// `r`, `r_x`, `r_y` at four nodes, incomplete quartic shape functions.
-    Thin36,
-}
-
-impl Kind {
-    /// All element types.
-    pub const ALL: [Self; 1] = [Self::Thin36];
-
-    /// The name in scene files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Thin36 => "thin36",
-        }
-    }
-
-    /// The vectors at each node, as the derivative orders of the position that they are.
-    pub fn nodal_vectors(self) -> &'static [NodalVector] {
-        match self {
-            Self::Thin36 => &[NodalVector::R, NodalVector::RX, NodalVector::RY],
-        }
-    }
-
-    /// The derivatives of the shape functions of an element with the given sides, `in_x` and `in_y` times, at
-    /// `(xi, eta)`.
-    pub(crate) fn shape_functions(self, sides: [f64; 2], orders: [usize; 2], at: [f64; 2]) -> Vec<f64> {
-        match self {
-            Self::Thin36 => derivative(&acm(sides[0], sides[1]), sides, orders, at).to_vec(),
-        }
-    }
-}
-
-/// A vector at a node: the position or one of its gradients.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NodalVector {
-    /// The position `r`.
-    R,
-    /// The gradient `r_x`.
-    RX,
-    /// The gradient `r_y`.
-    RY,
-}
-
-impl NodalVector {
-    /// All nodal vectors that some element has.
-    pub const ALL: [Self; 3] = [Self::R, Self::RX, Self::RY];
-
-    /// The name in scene files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::R => "r",
-            Self::RX => "r_x",
-            Self::RY => "r_y",
-        }
-    }
-
-    /// The vector at a point of a reference surface.
-    pub fn of(self, point: &SurfacePoint) -> [f64; 3] {
-        match self {
-            Self::R => point.r,
-            Self::RX => point.r_x,
-            Self::RY => point.r_y,
-        }
-    }
-
-    /// How often the position is differentiated along x and along y.
-    pub fn orders(self) -> (i32, i32) {
-        match self {
-            Self::R => (0, 0),
-            Self::RX => (1, 0),
-            Self::RY => (0, 1),
-        }
-    }
-}
 
 /// Strain samples of one measure: the points, their shape tables, and how the samples are weighted.
 #[derive(Clone, Debug)]
@@ -135,6 +57,8 @@ pub(crate) enum Group<const N: usize> {
     Projected(Samples<N, 2>, Projection<N>),
     /// Curvature of a surface.
     Bending(Samples<N, 5>, CurvatureLaw),
+    /// Strain of a solid.
+    Solid(Samples<N, 3>),
 }
 
 impl<const N: usize> Group<N> {
@@ -144,6 +68,7 @@ impl<const N: usize> Group<N> {
             Self::Membrane(samples) => samples.tables.len() * point_constants(COMPONENTS),
             Self::Projected(samples, _) => samples.tables.len() * COMPONENTS + MODES * (MODES + 1) / 2,
             Self::Bending(samples, _) => samples.tables.len() * point_constants(COMPONENTS),
+            Self::Solid(samples) => samples.tables.len() * point_constants(SOLID_PAIRS.len()),
         }
     }
 }
@@ -153,7 +78,7 @@ impl<const N: usize> Group<N> {
 pub(crate) struct Tables<const N: usize> {
     /// Sides of the element in its parameters.
     pub sides: [f64; 2],
-    /// The shape functions in `xi = x / l`, `eta = y / w`.
+    /// The shape functions on the middle surface, in `xi = x / l`, `eta = y / w`.
     pub functions: [Polynomial; N],
     /// The sample groups that make up the energy.
     pub groups: Vec<Group<N>>,
@@ -161,12 +86,13 @@ pub(crate) struct Tables<const N: usize> {
     pub mass: Vec<(Derivatives<N>, f64)>,
 }
 
-/// `N`, `N_x` and `N_y` at a point.
+/// `N`, `N_x`, `N_y` at a point, and `N_z` if the element has a direction of its own through the thickness.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Derivatives<const N: usize> {
     pub value: [f64; N],
     pub x: [f64; N],
     pub y: [f64; N],
+    pub z: Option<[f64; N]>,
 }
 
 impl<const N: usize> Tables<N> {

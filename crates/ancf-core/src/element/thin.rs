@@ -1,10 +1,10 @@
 //! The thin elements: membrane strain and curvature of a surface.
 
 use crate::quadrature::Rule;
-use crate::shape::{Polynomial, acm};
-use crate::strain::CurvatureLaw;
+use crate::shape::{Polynomial, acm, hermite};
 
 use super::corners::functions;
+use super::kind::Variant;
 use super::projection::Projection;
 use super::tables::{Derivatives, Group, Samples, Tables, derivative};
 
@@ -47,16 +47,24 @@ impl Membrane {
 /// # Source
 ///
 /// Dufva and Shabana (2005), section 3 and Appendix 2.
-pub(crate) fn thin36(sides: [f64; 2], membrane: Membrane, curvature: CurvatureLaw) -> Tables<12> {
-    tables(sides, acm(sides[0], sides[1]), membrane, curvature)
+pub(crate) fn thin36(sides: [f64; 2], variant: Variant) -> Tables<12> {
+    tables(sides, acm(sides), variant)
+}
+
+/// The thin plate with 48 degrees of freedom, whose slope is continuous too.
+///
+/// # Source
+///
+/// Dmitrochenko and Pogorelov (2003).
+pub(crate) fn thin48(sides: [f64; 2], variant: Variant) -> Tables<16> {
+    tables(sides, hermite(sides), variant)
 }
 
 /// The tables of a thin element with any shape functions.
 fn tables<const N: usize>(
     sides: [f64; 2],
     functions: [Polynomial; N],
-    membrane: Membrane,
-    curvature: CurvatureLaw,
+    Variant { membrane, curvature }: Variant,
 ) -> Tables<N> {
     let (membrane_rule, bending_rule) = membrane.rules();
     let area = sides[0] * sides[1];
@@ -75,7 +83,7 @@ fn tables<const N: usize>(
         groups.push(Group::Membrane(membrane_samples(membrane_rule)));
     }
     let mass = Rule::Gauss(5).square().into_iter().map(|(point, weight)| {
-        (Derivatives { value: at([0, 0], point), x: at([1, 0], point), y: at([0, 1], point) }, weight * area)
+        (Derivatives { value: at([0, 0], point), x: at([1, 0], point), y: at([0, 1], point), z: None }, weight * area)
     });
     Tables { sides, functions, mass: mass.collect(), groups }
 }

@@ -1,6 +1,6 @@
 //! Bodies: a reference surface, its mesh, its section and the element that models it.
 
-use crate::element::{Block, ElementBlock, Kind, Membrane, NodalVector, Section, thin36};
+use crate::element::{ElementBlock, Kind, Membrane, NodalVector, Section, Variant};
 use crate::error::InputError;
 use crate::material::Material;
 use crate::mesh::{Grid, Surface};
@@ -15,10 +15,10 @@ pub struct Plate {
     pub thickness: f64,
     /// The element type.
     pub element: Kind,
-    /// How the membrane strain is sampled.
-    pub membrane: Membrane,
-    /// The variant of the curvature.
-    pub curvature: CurvatureLaw,
+    /// How the membrane strain is sampled; none for the default, and for solid elements.
+    pub membrane: Option<Membrane>,
+    /// The variant of the curvature; none for the default, and for solid elements.
+    pub curvature: Option<CurvatureLaw>,
 }
 
 /// A body of a model.
@@ -27,6 +27,7 @@ pub struct Body {
     name: String,
     grid: Grid,
     plate: Plate,
+    variant: Variant,
     first_vector: usize,
 }
 
@@ -41,8 +42,9 @@ impl Body {
     ) -> Result<Self, InputError> {
         let h = plate.thickness;
         InputError::check("thickness", h, h > 0.0 && h.is_finite(), "a positive number, m")?;
+        let variant = plate.element.variant(plate.membrane, plate.curvature)?;
         let grid = Grid::new(surface.domain(), divisions)?;
-        Ok(Self { name: name.to_owned(), grid, plate, first_vector })
+        Ok(Self { name: name.to_owned(), grid, plate, variant, first_vector })
     }
 
     /// The name.
@@ -89,14 +91,16 @@ impl Body {
 
     /// The elements, ready to be evaluated; `reference` are the nodal coordinates of the whole model at rest.
     pub(crate) fn elements(&self, reference: &[f64]) -> Box<dyn ElementBlock> {
-        let Plate { material, thickness, element, membrane, curvature } = self.plate;
-        let sides = self.grid.element_sides();
+        let Plate { material, thickness, element, .. } = self.plate;
         let section = Section { material, thickness };
-        match element {
-            Kind::Thin36 => {
-                Box::new(Block::new(thin36(sides, membrane, curvature), self.connectivity(), reference, section))
-            }
-        }
+        let vectors = (0..self.grid.elements()).flat_map(|element| self.element_vectors(element));
+        let vectors: Vec<u32> = vectors.map(|vector| vector as u32).collect();
+        element.block(self.grid.element_sides(), self.variant, section, &vectors, reference)
+    }
+
+    /// The variant of the curvature.
+    pub(crate) fn curvature(&self) -> CurvatureLaw {
+        self.variant.curvature
     }
 
     /// The nodal vectors of an element and its shape functions at a point of it: `N`, `N_x`, `N_y`, `N_xx`, `N_yy`,
@@ -106,18 +110,5 @@ impl Body {
         let sides = self.grid.element_sides();
         let tables = ORDERS.map(|orders| self.plate.element.shape_functions(sides, orders, at));
         (self.element_vectors(element).collect(), tables)
-    }
-
-    /// The nodal vectors of every element.
-    fn connectivity<const N: usize>(&self) -> Vec<[u32; N]> {
-        (0..self.grid.elements())
-            .map(|element| {
-                let mut vectors = [0; N];
-                for (target, vector) in vectors.iter_mut().zip(self.element_vectors(element)) {
-                    *target = vector as u32;
-                }
-                vectors
-            })
-            .collect()
     }
 }

@@ -75,7 +75,8 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// The name must be new, the thickness positive, the divisions at least one.
+    /// The name must be new, the thickness positive, the divisions at least one and those of a surface given at nodes;
+    /// the element must have the membrane and curvature variants.
     pub fn add_body(
         &mut self,
         name: &str,

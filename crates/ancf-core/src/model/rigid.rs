@@ -61,7 +61,8 @@ impl Model {
         for node in 0..nodes {
             for (index, kind) in body.nodal_vectors().iter().enumerate() {
                 let v = body.vector(node, index);
-                if !fixed(v) {
+                // A vector that is zero at rest, as r_xy of a rectangle, keeps its value in any motion.
+                if !fixed(v) || vector(v) == Vector3::zeros() && *kind != NodalVector::R {
                     continue;
                 }
                 let (value, scale, moved) = match kind {

@@ -226,9 +226,10 @@ fn scales(system: &System) -> Vec<f64> {
         let ranges = body.grid().domain().map(|[from, to]| to - from);
         for node in 0..body.grid().nodes() {
             for (index, vector) in body.nodal_vectors().iter().enumerate() {
-                let (dx, dy) = vector.orders();
+                // A vector through the thickness only turns with the body.
+                let size = vector.orders().map_or(1.0, |(dx, dy)| extent / (ranges[0].powi(dx) * ranges[1].powi(dy)));
                 let v = body.vector(node, index);
-                scale[3 * v..3 * v + 3].fill(extent / (ranges[0].powi(dx) * ranges[1].powi(dy)));
+                scale[3 * v..3 * v + 3].fill(size);
             }
         }
     }

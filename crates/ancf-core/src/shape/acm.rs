@@ -10,7 +10,7 @@ use super::Polynomial;
 ///
 /// Dufva and Shabana (2005), Appendix 2, with the slips of the printed text mended: each function is one at its own
 /// nodal coordinate and zero at the other eleven.
-pub fn acm(l: f64, w: f64) -> [Polynomial; 12] {
+pub fn acm([l, w]: [f64; 2]) -> [Polynomial; 12] {
     let x = Polynomial::xi();
     let y = Polynomial::eta();
     let (x1, y1) = (x - 1.0, y - 1.0);
@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn nodal_coordinates_are_interpolated() {
         let (l, w) = (0.7, 1.9);
-        let functions = acm(l, w);
+        let functions = acm([l, w]);
         for (node, (xi, eta)) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].into_iter().enumerate() {
             for (vector, (dx, dy)) in [(0, 0), (1, 0), (0, 1)].into_iter().enumerate() {
                 for (a, function) in functions.iter().enumerate() {
@@ -55,7 +55,7 @@ mod tests {
     #[test]
     fn cubics_are_complete() {
         let (l, w) = (1.3, 0.6);
-        let functions = acm(l, w);
+        let functions = acm([l, w]);
         let field = |x: f64, y: f64| 1.0 + 2.0 * x - y + x * y + 3.0 * x * x - y * y * y + 0.5 * x * x * y;
         let field_x = |x: f64, y: f64| 2.0 + y + 6.0 * x + x * y;
         let field_y = |x: f64, y: f64| -1.0 + x - 3.0 * y * y + 0.5 * x * x;

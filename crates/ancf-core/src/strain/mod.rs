@@ -4,6 +4,7 @@
 //! everything built on them follow in `element::kernel`, once for all measures.
 
 mod curvature;
+mod green_lagrange;
 mod metric;
 
 use pulp::Simd;
@@ -11,6 +12,7 @@ use pulp::Simd;
 use crate::lanes::{Lanes, Vector, axpy};
 
 pub use curvature::{Curvature, CurvatureLaw};
+pub use green_lagrange::GreenLagrange;
 pub use metric::Metric;
 
 /// A 3 x 3 block of a tangent, row by row.
@@ -22,13 +24,20 @@ pub const fn packed(a: usize, b: usize) -> usize {
     b * (b + 1) / 2 + a
 }
 
+/// The pair of directions of each strain component of a surface: `xx`, `yy`, `xy`.
+pub const SURFACE_PAIRS: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
+
+/// The pair of directions of each strain component of a solid: `xx`, `yy`, `zz`, `yz`, `xz`, `xy`.
+pub const SOLID_PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
+
 /// A strain measure at one point: `C` components that depend on `D` gradient vectors.
 pub trait Measure<S: Simd, const D: usize, const C: usize>: Copy {
     /// What is fixed for all points and elements, such as the choice of a variant.
     type Law: Copy;
 
-    /// Evaluates the measure for the given gradient vectors; `area` is the reference area stretch `|R_x x R_y|`.
-    fn new(law: Self::Law, gradients: [Vector<S>; D], area: Lanes<S>) -> Self;
+    /// Evaluates the measure for the given gradient vectors; `stretch` is that of the reference: the area
+    /// `|R_x x R_y|` of a surface, the volume `|R_x x R_y . R_z|` of a solid for a unit of the parameters.
+    fn new(law: Self::Law, gradients: [Vector<S>; D], stretch: Lanes<S>) -> Self;
 
     /// The strain components, sheared and twisted ones doubled.
     fn strain(&self) -> [Lanes<S>; C];

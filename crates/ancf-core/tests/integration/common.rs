@@ -13,18 +13,20 @@ use ancf_core::report::Outcome;
 use ancf_core::strain::CurvatureLaw;
 use nalgebra::{DMatrix, Rotation3, Vector3};
 
-/// Every way a plate can be modelled.
-pub fn variants() -> impl Iterator<Item = (Kind, Membrane, CurvatureLaw)> {
-    let laws = [CurvatureLaw::Paper, CurvatureLaw::Koiter];
-    Kind::ALL.into_iter().flat_map(move |element| {
-        Membrane::ALL.into_iter().flat_map(move |membrane| laws.map(|curvature| (element, membrane, curvature)))
-    })
+/// Every way a plate can be modelled: the thin elements with each membrane and curvature they have, the solid ones.
+pub fn variants() -> impl Iterator<Item = (Kind, Option<Membrane>, Option<CurvatureLaw>)> {
+    let thin = [Kind::Thin36, Kind::Thin48].into_iter().flat_map(|element| {
+        let membranes = Membrane::ALL.into_iter().filter(move |m| element == Kind::Thin36 || *m != Membrane::Lobatto);
+        membranes.flat_map(move |m| CurvatureLaw::ALL.map(|law| (element, Some(m), Some(law))))
+    });
+    let solid = Kind::ALL.into_iter().filter(|element| element.is_solid()).map(|element| (element, None, None));
+    thin.chain(solid)
 }
 
 /// A plate with Young's modulus (Pa), Poisson's ratio, density (kg/m3) and thickness (m), and the paper's curvature.
 pub fn plate(young: f64, poisson: f64, density: f64, thickness: f64, membrane: Membrane) -> Plate {
     let material = Material::new(young, poisson, density).unwrap();
-    Plate { material, thickness, element: Kind::Thin36, membrane, curvature: CurvatureLaw::Paper }
+    Plate { material, thickness, element: Kind::Thin36, membrane: Some(membrane), curvature: None }
 }
 
 /// A model of one rectangle.
@@ -127,8 +129,10 @@ pub fn field(model: &Model, body: BodyId, derivative: impl Fn((i32, i32), [f64; 
     let body = model.body(body);
     for node in 0..body.grid().nodes() {
         for (index, vector) in body.nodal_vectors().iter().enumerate() {
+            // A field is one of the middle surface: it says nothing of vectors through the thickness.
+            let Some(orders) = vector.orders() else { continue };
             let first = 3 * body.vector(node, index);
-            q[first..first + 3].copy_from_slice(&derivative(vector.orders(), body.grid().parameters(node)));
+            q[first..first + 3].copy_from_slice(&derivative(orders, body.grid().parameters(node)));
         }
     }
     q

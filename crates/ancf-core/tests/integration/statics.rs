@@ -34,7 +34,7 @@ fn corner(model: &Model, body: BodyId, state: &State) -> [f64; 3] {
 /// The steel cantilever of Dufva and Shabana (2005), 0.5 x 0.15 x 0.001 m, with 30 N as a dead line load on its end.
 fn steel_cantilever(n: usize, membrane: Membrane, curvature: CurvatureLaw) -> (Model, BodyId) {
     let mut plate = plate(2.07e11, 0.3, 7810.0, 0.001, membrane);
-    plate.curvature = curvature;
+    plate.curvature = Some(curvature);
     let (mut model, body) = rectangle([0.5, 0.15], [n, 1], plate);
     model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
     add_ramp(&mut model, line(body, "edge:x1", [0.0, 0.0, -200.0]));
