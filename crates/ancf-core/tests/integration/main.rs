@@ -6,6 +6,7 @@ mod conformance;
 mod dynamics;
 mod frequencies;
 mod invariance;
+mod load_paths;
 mod loads;
 mod statics;
 mod threads;
