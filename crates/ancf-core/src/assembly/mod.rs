@@ -252,16 +252,26 @@ impl System {
 
     /// Force of the loads `Q_e` on all coordinates at time (or load factor) `t`.
     pub fn external_force(&self, q: &[f64], t: f64, force: &mut [f64]) {
+        self.sum_loads(|history| history.factor(t), q, force);
+    }
+
+    /// Derivative of [`external_force`](Self::external_force) with respect to `t`, just after it.
+    pub fn external_force_rate(&self, q: &[f64], t: f64, force: &mut [f64]) {
+        self.sum_loads(|history| history.rate(t), q, force);
+    }
+
+    /// The loads, each times a number that its history gives.
+    fn sum_loads(&self, factor: impl Fn(&History) -> f64, q: &[f64], force: &mut [f64]) {
         force.fill(0.0);
         for load in &self.dead {
-            let factor = load.history.factor(t);
+            let factor = factor(&load.history);
             for (sum, f) in force.iter_mut().zip(&load.force) {
                 *sum += factor * f;
             }
         }
         for load in &self.followers {
             let elements = self.blocks[load.block].as_ref();
-            load.add_force(elements, self.model.reference(), q, load.history.factor(t), force);
+            load.add_force(elements, self.model.reference(), q, factor(&load.history), force);
         }
     }
 

@@ -44,6 +44,19 @@ impl History {
         }
     }
 
+    /// How fast the factor changes with time (or load factor) just after `t`.
+    pub fn rate(&self, t: f64) -> f64 {
+        match self {
+            Self::Constant => 0.0,
+            Self::Ramp => 1.0,
+            Self::Table(rows) => match rows.partition_point(|row| row[0] <= t) {
+                0 => 0.0,
+                after if after == rows.len() => 0.0,
+                after => (rows[after][1] - rows[after - 1][1]) / (rows[after][0] - rows[after - 1][0]),
+            },
+        }
+    }
+
     /// Where the factor changes its slope.
     pub fn kinks(&self) -> impl Iterator<Item = f64> {
         let rows = if let Self::Table(rows) = self { rows.as_slice() } else { &[] };
@@ -60,6 +73,9 @@ mod tests {
         let history = History::table(vec![[1.0, 2.0], [3.0, 6.0], [4.0, 0.0]]).unwrap();
         for (t, factor) in [(0.0, 2.0), (1.0, 2.0), (2.0, 4.0), (3.0, 6.0), (3.75, 1.5), (9.0, 0.0)] {
             assert_eq!(history.factor(t), factor, "at {t}");
+        }
+        for (t, rate) in [(0.0, 0.0), (1.0, 2.0), (2.0, 2.0), (3.0, -6.0), (4.0, 0.0)] {
+            assert_eq!(history.rate(t), rate, "at {t}");
         }
         assert!(History::table(vec![[1.0, 2.0], [1.0, 3.0]]).is_err());
         assert!(History::table(vec![]).is_err());

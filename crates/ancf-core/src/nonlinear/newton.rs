@@ -55,6 +55,8 @@ impl Options {
 /// How a solution was found.
 #[derive(Clone, Copy, Debug)]
 pub struct Report {
+    /// Time, or load factor, of the solution.
+    pub t: f64,
     /// Newton iterations.
     pub iterations: usize,
     /// Largest ratio of a correction, if it is above rounding, to the one before: Newton's method that starts near the
@@ -115,6 +117,11 @@ impl Newton {
         from.iter().zip(to).zip(&self.scale).map(|((a, b), s)| (b - a).abs() / s).fold(0.0, f64::max)
     }
 
+    /// Largest changes that count as one, of each coordinate.
+    pub fn scale(&self) -> &[f64] {
+        &self.scale
+    }
+
     /// Solves a problem, starting from `q`. If `last` is given, the geometric stiffness of the first iteration uses
     /// the stress extrapolated from there.
     ///
@@ -125,6 +132,40 @@ impl Newton {
         &mut self,
         system: &mut System,
         problem: &Problem<'_>,
+        q: &mut [f64],
+        last: Option<&[f64]>,
+        observer: &dyn Observer,
+    ) -> Result<Report, Failure> {
+        self.iterate(system, *problem, None, q, last, observer)
+    }
+
+    /// The same with a load factor that is found, from `problem.t` on: the coordinates stay in the plane through `q`
+    /// with the given normal instead.
+    ///
+    /// # Source
+    ///
+    /// Riks (1979); Keller (1977): the bordered equations are solved with two right-hand sides.
+    ///
+    /// # Errors
+    ///
+    /// See [`Failure`]; `q` is then of no use.
+    pub fn solve_in_plane(
+        &mut self,
+        system: &mut System,
+        problem: &Problem<'_>,
+        normal: &[f64],
+        q: &mut [f64],
+        last: Option<&[f64]>,
+        observer: &dyn Observer,
+    ) -> Result<Report, Failure> {
+        self.iterate(system, *problem, Some(normal), q, last, observer)
+    }
+
+    fn iterate(
+        &mut self,
+        system: &mut System,
+        mut problem: Problem<'_>,
+        normal: Option<&[f64]>,
         q: &mut [f64],
         last: Option<&[f64]>,
         observer: &dyn Observer,
@@ -150,13 +191,21 @@ impl Newton {
             let previous = extrapolate.then_some(self.previous.as_slice());
             let want = Want { mass: problem.mass, stiffness: problem.stiffness, previous };
             let strain = system.assemble(q, problem.t, want, &mut self.internal);
-            self.form_residual(system, problem, q);
+            self.form_residual(system, &problem, q);
             if !self.residual.iter().all(|r| r.is_finite()) {
                 return Err(Failure::NotFinite { iteration });
             }
             let inertia =
                 system.factorize().map_err(|e| Failure::from_linear(e, iteration, |row| system.describe(row)))?;
             system.solve(&self.residual, &mut self.correction);
+            if let Some(normal) = normal {
+                system.external_force_rate(q, problem.t, &mut self.external);
+                system.solve(&self.external, &mut self.offset);
+                let along = |x: &[f64]| normal.iter().zip(x).map(|(n, x)| n * x).sum::<f64>();
+                let change = along(&self.correction) / along(&self.offset);
+                problem.t += change;
+                self.correction.iter_mut().zip(&self.offset).for_each(|(c, v)| *c -= change * v);
+            }
 
             let before = size;
             size = self.correction.iter().zip(&self.scale).map(|(d, s)| d.abs() / s).fold(0.0, f64::max);
@@ -187,7 +236,7 @@ impl Newton {
                 let change: f64 = self.correction.iter().zip(&self.internal).map(|(d, f)| d * f).sum();
                 let negative_pivots = inertia.negative;
                 let energy = strain.total() - change;
-                return Ok(Report { iterations: iteration, growth, negative_pivots, energy });
+                return Ok(Report { t: problem.t, iterations: iteration, growth, negative_pivots, energy });
             }
             stalled = if size < 0.5 * smallest { 0 } else { stalled + 1 };
             smallest = smallest.min(size);

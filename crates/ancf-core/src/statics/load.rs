@@ -30,17 +30,20 @@ const SMALL: f64 = 1e-6;
 /// Energies are known to this accuracy only.
 const ROUNDING: f64 = 1e-10;
 /// The number of iterations that a step should take.
-const ITERATIONS: f64 = 8.0;
+pub(super) const ITERATIONS: f64 = 8.0;
+
+/// Brings the loads that do not vanish at load factor 0 into equilibrium.
+pub(super) fn release(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
+    if path.initial.iter().any(|f| *f != 0.0) {
+        reach(path, Load::default(), options, &mut { f64::INFINITY }, observer)?;
+    }
+    path.at.load.held = 0.0;
+    Ok(())
+}
 
 /// Follows the path through the load factors.
 pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
-    let mut step = f64::INFINITY;
-    if path.initial.iter().any(|f| *f != 0.0) {
-        reach(path, Load::default(), options, &mut step, observer)?;
-    }
-    path.at.load.held = 0.0;
-    path.output(observer);
-    step = options.first_step.unwrap_or(f64::INFINITY);
+    let mut step = options.first_step.unwrap_or(f64::INFINITY);
     for &t in &options.load_factors {
         for t in path.system.model().kinks(path.at.load.t, t).chain([t]) {
             reach(path, Load { t, held: 0.0 }, options, &mut step, observer)?;

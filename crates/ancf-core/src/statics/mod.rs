@@ -1,5 +1,6 @@
 //! Equilibria along a load path: Newton's method inside load steps of adaptive size.
 
+mod arc;
 mod load;
 mod path;
 
@@ -13,10 +14,23 @@ use crate::report::{Outcome, Run, Seconds};
 
 use path::Path;
 
+/// What is prescribed along the path.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Control {
+    /// The load factor: only stable equilibria.
+    #[default]
+    Load,
+    /// The arc length: the load factor is found and may decrease, equilibria may be unstable.
+    Arc,
+}
+
 /// Settings of a static solve.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The load factors at which a solution is wanted, in the order of the path.
+    /// What is prescribed.
+    pub control: Control,
+    /// Load control: the load factors at which a solution is wanted, in the order of the path. Arc length: the first
+    /// gives the direction, the path ends at the last; every step is a solution.
     pub load_factors: Vec<f64>,
     /// Newton's method.
     pub newton: NewtonOptions,
@@ -24,11 +38,20 @@ pub struct Options {
     pub first_step: Option<f64>,
     /// Smallest load step.
     pub min_step: f64,
+    /// Arc length: number of steps after which the path ends before its last load factor.
+    pub max_steps: usize,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { load_factors: vec![1.0], newton: NewtonOptions::default(), first_step: None, min_step: 1e-5 }
+        Self {
+            control: Control::default(),
+            load_factors: vec![1.0],
+            newton: NewtonOptions::default(),
+            first_step: None,
+            min_step: 1e-5,
+            max_steps: 1000,
+        }
     }
 }
 
@@ -49,13 +72,15 @@ impl Options {
             InputError::check("first_step", step, valid(step), "a positive number")?;
         }
         InputError::check("min_step", self.min_step, valid(self.min_step), "a positive number")?;
+        InputError::check("max_steps", self.max_steps, self.max_steps > 0, "a whole number from 1")?;
         self.newton.validate()
     }
 }
 
 /// Follows the equilibrium path from the unloaded state through the load factors.
 ///
-/// States are given to the observer: one at load factor 0 and one at each requested factor.
+/// States are given to the observer: one at load factor 0, then one at each requested factor, or with arc length at
+/// each step, those at limit points included.
 ///
 /// # Errors
 ///
@@ -64,7 +89,7 @@ pub fn solve(system: &mut System, options: &Options, observer: &mut dyn Observer
     options.validate()?;
     let start = Instant::now();
     let mut path = Path::new(system, options.newton);
-    let end = path.begin().and_then(|()| load::follow(&mut path, options, observer));
+    let end = path.follow(options, observer);
     let (outcome, reached, counts) = (Outcome::from_end(end), path.at.load.t, path.counts());
     Ok(Run { outcome, reached, counts: counts.of(system), seconds: Seconds::new(system, start.elapsed()) })
 }

@@ -6,6 +6,8 @@ use crate::nonlinear::{Failure, Newton, Options as NewtonOptions};
 use crate::observe::{Observer, State};
 use crate::report::Counts;
 
+use super::{Control, Options, arc, load};
+
 /// Where the loads are on their way.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Load {
@@ -59,8 +61,19 @@ impl<'a> Path<'a> {
         Self { system, newton, at, initial, work: 0.0, steps: 0, rejected: 0 }
     }
 
+    /// Follows the path from rest to its end.
+    pub fn follow(&mut self, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
+        self.begin()?;
+        load::release(self, options, observer)?;
+        self.output(observer);
+        match options.control {
+            Control::Load => load::follow(self, options, observer),
+            Control::Arc => arc::follow(self, options, observer),
+        }
+    }
+
     /// Checks that the supports suffice and factorises the tangent at rest.
-    pub fn begin(&mut self) -> Result<(), Failure> {
+    fn begin(&mut self) -> Result<(), Failure> {
         let motions = self.system.model().rigid_motions(&self.at.q);
         if !motions.is_empty() {
             let motions = motions.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");

@@ -7,6 +7,7 @@ mod dynamics;
 mod elements;
 mod frequencies;
 mod invariance;
+mod load_paths;
 mod loads;
 mod reference_shapes;
 mod statics;

@@ -1,19 +1,23 @@
-//! Load paths of strips: whatever the first step, the solution is the one that the path leads to.
+//! Load paths: whatever the first step, the solution is the one that the path leads to, through limit points as well.
+//!
+//! Reference: an independent implementation of the same element, closed forms, and K. Y. Sze, X. H. Liu, S. H. Lo, Popular
+//! benchmark problems for geometric nonlinear analysis of shells, Finite Elem. Anal. Des. 40 (2004) 1551-1569.
+//! Goal: no other branch by a giant step; a full turn by an end moment; kinks of histories; hinged roofs past their limit
+//! points.
+//! Mesh: n x 1 elements; 8 x 8 for a quarter of the roofs.
 
-use std::f64::consts::PI;
-use std::sync::Arc;
+use std::f64::consts::{FRAC_PI_2, PI};
 
-use ancf_core::assembly::System;
-use ancf_core::element::{Kind, Membrane};
+use ancf_core::element::{Membrane, NodalVector};
 use ancf_core::mesh::{Edge, Surface};
-use ancf_core::model::{BodyId, History, Load, LoadKind, Model, Plate};
+use ancf_core::model::{BodyId, Fix, History, Load, LoadKind, Model};
 use ancf_core::observe::State;
 use ancf_core::report::{Outcome, Run};
-use ancf_core::{Material, statics};
+use ancf_core::statics::{Control, Options, solve};
 
-const MEMBRANES: [Membrane; 3] = [Membrane::Full, Membrane::Lobatto, Membrane::Projected];
+use crate::common::{add_ramp, plate, rectangle, system};
 
-/// A strip clamped at x0 with a load on x1.
+/// A strip clamped at x0.
 struct Strip {
     size: [f64; 2],
     elements: usize,
@@ -24,37 +28,33 @@ struct Strip {
 }
 
 impl Strip {
+    /// Solves with a load on x1.
     fn solve(
         &self,
         load: impl Fn(BodyId, Edge) -> LoadKind,
         history: History,
         load_factors: Vec<f64>,
     ) -> (Run, Vec<State>) {
-        let plate = Plate {
-            material: Material::new(self.e, self.nu, 1.0).unwrap(),
-            thickness: self.thickness,
-            element: Kind::Thin36,
-            membrane: Some(self.membrane),
-            curvature: None,
-        };
-        let mut model = Model::new();
-        let surface = Surface::rectangle(self.size).unwrap();
-        let body = model.add_body("strip", &surface, [self.elements, 1], plate).unwrap();
+        let plate = plate(self.e, self.nu, 1.0, self.thickness, self.membrane);
+        let (mut model, body) = rectangle(self.size, [self.elements, 1], plate);
         model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
         let edge = Model::edge_at("edge:x1".parse().unwrap()).unwrap();
         model.add_load(Load { kind: load(body, edge), history }).unwrap();
-        let mut system = System::new(Arc::new(model)).unwrap();
-        let options = statics::Options { load_factors, ..statics::Options::default() };
-        let mut states = Vec::new();
-        let run = statics::solve(&mut system, &options, &mut states).unwrap();
-        assert_eq!(run.outcome, Outcome::Ok);
-        (run, states)
+        path(model, &Options { load_factors, ..Options::default() })
     }
 
     /// Position of the corner x1, y0.
     fn corner(&self, state: &State) -> [f64; 3] {
         state.q[9 * self.elements..][..3].try_into().unwrap()
     }
+}
+
+/// The states of a path that must reach its end.
+fn path(model: Model, options: &Options) -> (Run, Vec<State>) {
+    let mut states = Vec::new();
+    let run = solve(&mut system(model), options, &mut states).unwrap();
+    assert_eq!(run.outcome, Outcome::Ok, "at {}", run.reached);
+    (run, states)
 }
 
 /// The steel cantilever whose membrane locks: with `Full` quadrature and few elements it has stable equilibria beside
@@ -86,7 +86,7 @@ fn a_giant_step_does_not_land_on_another_branch() {
 /// M = 2 pi E I / L rolls a strip into a circle: its end comes back to the clamped edge.
 #[test]
 fn an_end_moment_rolls_a_strip_into_a_circle() {
-    for membrane in MEMBRANES {
+    for membrane in Membrane::ALL {
         let strip = Strip { size: [1.0, 0.1], elements: 16, e: 2e11, nu: 0.0, thickness: 1e-3, membrane };
         let per_length = 2.0 * PI * strip.e * strip.thickness.powi(3) / 12.0;
         let moment = |body, edge| LoadKind::Moment { body, edge, per_length };
@@ -120,4 +120,54 @@ fn a_load_is_followed_through_the_kinks_of_its_history() {
     assert!((z(&states[1]) - z(&ramp[1])).abs() < 1e-7 && z(&ramp[1]) < -0.3, "{} {}", z(&states[1]), z(&ramp[1]));
     assert!(z(&states[2]).abs() < 1e-7, "{}", z(&states[2]));
     assert!(states[2].work.abs() < 1e-9 * states[1].work, "{} {}", states[2].work, states[1].work);
+}
+
+/// A hinged cylindrical roof under a central force, a quarter of it: R 2540, length 508, half angle 0.1 rad, E 3102.75,
+/// nu 0.3, force 3000 at load factor 1 (mm, N). Returns load factors, deflections and negative pivots along its path.
+fn hinged_roof(thickness: f64) -> (Run, Vec<[f64; 2]>, Vec<usize>) {
+    let mut model = Model::new();
+    let surface = Surface::cylinder(2540.0, [FRAC_PI_2 - 0.1, FRAC_PI_2], [0.0, 254.0]).unwrap();
+    let plate = plate(3102.75, 0.3, 1.0, thickness, Membrane::Projected);
+    let body = model.add_body("roof", &surface, [8, 8], plate).unwrap();
+    let mut fix = |place: &str, vector, components: &[usize]| {
+        for component in components {
+            model.fix(body, place.parse().unwrap(), Fix { vector, component: Some(*component) }).unwrap();
+        }
+    };
+    use NodalVector::{R, RX, RY};
+    // The hinge; the planes of symmetry X = 0 and Z = 0.
+    for (vector, components) in [(R, [0, 1, 2]), (RY, [0, 1, 2])] {
+        fix("edge:x0", vector, &components);
+    }
+    for (place, normal, along, across) in [("edge:x1", 0, RY, RX), ("edge:y0", 2, RX, RY)] {
+        fix(place, R, &[normal]);
+        fix(place, along, &[normal]);
+        fix(place, across, &[(normal + 1) % 3, (normal + 2) % 3]);
+    }
+    add_ramp(&mut model, LoadKind::Force { body, point: [FRAC_PI_2, 0.0], force: [0.0, -750.0, 0.0] });
+    let first = 3 * model.body(body).vector(8, 0) + 1;
+    let options = Options { control: Control::Arc, ..Options::default() };
+    let (run, states) = path(model, &options);
+    let points = states.iter().map(|state| [state.t, 2540.0 - state.q[first]]).collect();
+    (run, points, states.iter().map(|state| state.negative_pivots.unwrap()).collect())
+}
+
+/// Limit points and the last deflection of the table within 1 %.
+#[test]
+fn hinged_roofs_snap_through_and_back() {
+    // Deflections at load factor 1 are interpolated in the table.
+    let cases = [(12.7, [0.7421, 0.1729], 28.876), (6.35, [0.1953, -0.1288], 38.190)];
+    for (thickness, limits, deflection) in cases {
+        let (run, points, negative) = hinged_roof(thickness);
+        let stable = negative.iter().take_while(|negative| **negative == 0).count();
+        let top = points[..=stable].iter().map(|[t, _]| *t).fold(0.0, f64::max);
+        let bottom = points[stable..].iter().map(|[t, _]| *t).fold(f64::INFINITY, f64::min);
+        for (found, expected) in [top, bottom].into_iter().zip(limits) {
+            assert!((found / expected - 1.0).abs() < 0.01, "{thickness}: limit point {found}, expected {expected}");
+        }
+        let [_, found] = points[points.len() - 1];
+        assert!((found / deflection - 1.0).abs() < 0.01, "{thickness}: {found}, expected {deflection}");
+        assert_eq!(negative.last(), Some(&0));
+        println!("{thickness}: limit points {top:.4}, {bottom:.4}; {:?}", run.counts);
+    }
 }

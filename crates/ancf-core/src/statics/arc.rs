@@ -1,0 +1,257 @@
+//! Arc length: a path whose load factor is found, through limit points and turning points.
+//!
+//! Each step predicts along the tangent and solves in the plane normal to it. Lengths are root mean squares of the
+//! coordinates' changes relative to the size of the model; the load factor has no part in them.
+
+use crate::nonlinear::{Failure, Problem};
+use crate::observe::Observer;
+use crate::quadrature::Rule;
+
+use super::Options;
+use super::load::ITERATIONS;
+use super::path::{Load, Path, Point};
+
+/// Largest distance of a solution from its prediction, relative to the step, and the one to aim at: by a polygon through
+/// the points a path can be drawn.
+const TURN: [f64; 2] = [0.5, 0.2];
+/// Largest difference between the gain of strain energy and the work on the cubic way, relative to the latter.
+const MISMATCH: f64 = 0.05;
+/// A limit point this close to the end of a step, relative to its length, is that end.
+const LIMIT: f64 = 0.05;
+
+/// Follows the path until it reaches the last load factor.
+///
+/// # Source
+///
+/// Riks (1979), Crisfield (1981) for the cylindrical measure; Feng, Peric and Owen (1995) for the direction, which is the
+/// one that goes on along the last step.
+pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
+    let factors = &options.load_factors;
+    let (first, target) = (factors[0] - path.at.load.t, factors[factors.len() - 1]);
+    let mut walk = Walk::new(path, first, options);
+    while path.at.load.t != target && path.steps < options.max_steps {
+        walk.step(path, target, observer)?;
+        path.steps += 1;
+        path.output(observer);
+    }
+    Ok(())
+}
+
+/// Steps along a path.
+pub(super) struct Walk {
+    metric: Metric,
+    tangent: Tangent,
+    length: f64,
+    shortest: f64,
+    longest: f64,
+}
+
+impl Walk {
+    /// From the last point of the path, whose tangent is factorised, in the direction in which the load factor changes
+    /// by `first`; no step is longer than the tangent is for that change.
+    pub fn new(path: &mut Path<'_>, first: f64, options: &Options) -> Self {
+        let metric = Metric::new(path);
+        let rate = metric.rate(path, &path.at.q.clone(), path.at.load.t);
+        let size = metric.length(&rate);
+        let length = size * options.first_step.unwrap_or(f64::INFINITY).min(first.abs());
+        let tangent = Tangent::new(rate, first.signum() / size);
+        Self { metric, tangent, length, shortest: size * options.min_step, longest: size * first.abs() }
+    }
+
+    /// Makes a step of the path; it ends where a limit point or the target is met.
+    pub fn step(&mut self, path: &mut Path<'_>, target: f64, observer: &dyn Observer) -> Result<(), Failure> {
+        let mut share = 1.0;
+        loop {
+            match advance(path, &self.metric, &self.tangent, share * self.length, target, observer) {
+                Ok(Step::Accepted { iterations, turn, end }) => {
+                    let growth = (ITERATIONS / iterations as f64).powi(2).min(share * TURN[1] / turn).clamp(0.5, 2.0);
+                    self.length = (growth * self.length).min(self.longest);
+                    self.tangent = end;
+                    return Ok(());
+                }
+                Ok(Step::Shortened(by)) => share *= by,
+                Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
+                Err(failure) => {
+                    path.rejected += 1;
+                    self.length *= 0.5 * share;
+                    share = 1.0;
+                    if self.length < self.shortest {
+                        return Err(failure);
+                    }
+                }
+            }
+        }
+    }
+}
+
+enum Step {
+    Accepted {
+        iterations: usize,
+        turn: f64,
+        end: Tangent,
+    },
+    /// There is a limit point at this share of the step, which should end there.
+    Shortened(f64),
+}
+
+/// One step, or none if it fails.
+fn advance(
+    path: &mut Path<'_>,
+    metric: &Metric,
+    tangent: &Tangent,
+    length: f64,
+    target: f64,
+    observer: &dyn Observer,
+) -> Result<Step, Failure> {
+    let from = &path.at;
+    let mut q: Vec<f64> = from.q.iter().zip(&tangent.q).map(|(q, p)| q + length * p).collect();
+    let predicted = q.clone();
+    let zeros = vec![0.0; q.len()];
+    let t = from.load.t + length * tangent.t;
+    let mut problem = Problem { t, mass: 0.0, stiffness: 1.0, origin: &zeros, constant: &zeros };
+    let normal: Vec<f64> = tangent.q.iter().zip(&metric.weights).map(|(p, w)| w * p).collect();
+    let mut report = path.newton.solve_in_plane(path.system, &problem, &normal, &mut q, Some(&from.q), observer)?;
+    let iterations = report.iterations;
+
+    let way = {
+        let straight = difference(&q, &from.q);
+        let rate = metric.rate(path, &q, report.t);
+        let chord = metric.length(&straight);
+        let forward = metric.product(&rate, &straight).signum() / metric.length(&rate);
+        Way { from: &path.at, q: &q, t: report.t, start: tangent, end: Tangent::new(rate, forward), chord }
+    };
+    let turn = metric.length(&difference(&q, &predicted)) / length;
+    let work = way.work(path);
+    let gained = report.energy - path.at.energy;
+    let mismatch = (gained - work) / work.abs();
+    if turn > TURN[0] || mismatch.abs() > MISMATCH {
+        return Err(Failure::Disconnected { progress: turn, mismatch });
+    }
+    if let Some(share) = way.limit().filter(|share| (LIMIT..1.0 - LIMIT).contains(share)) {
+        return Ok(Step::Shortened(share));
+    }
+    let mut last = None;
+    if (way.t - target) * (path.at.load.t - target) < 0.0 {
+        let crossing = way.crossing(target);
+        let mut end = way.at(crossing).0;
+        problem.t = target;
+        report = path.newton.solve(path.system, &problem, &mut end, Some(&path.at.q), observer)?;
+        let miss = metric.length(&difference(&end, &way.at(crossing).0)) / length;
+        if miss > LIMIT {
+            return Err(Failure::Disconnected { progress: miss, mismatch });
+        }
+        last = Some(end);
+    }
+    let end = way.end;
+    path.work += report.energy - path.at.energy;
+    let load = Load { t: report.t, held: 0.0 };
+    path.at = Point { load, q: last.unwrap_or(q), energy: report.energy, negative_pivots: report.negative_pivots };
+    Ok(Step::Accepted { iterations, turn, end })
+}
+
+/// Changes per unit of length along the path.
+struct Tangent {
+    q: Vec<f64>,
+    t: f64,
+}
+
+impl Tangent {
+    /// From the changes per load factor and the load factor's change.
+    fn new(mut rate: Vec<f64>, t: f64) -> Self {
+        rate.iter_mut().for_each(|v| *v *= t);
+        Self { q: rate, t }
+    }
+}
+
+/// Lengths of changes of the coordinates.
+struct Metric {
+    weights: Vec<f64>,
+}
+
+impl Metric {
+    fn new(path: &Path<'_>) -> Self {
+        let free = path.system.free().len() as f64;
+        Self { weights: path.newton.scale().iter().map(|s| 1.0 / (free * s * s)).collect() }
+    }
+
+    fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).zip(&self.weights).map(|((a, b), w)| w * a * b).sum()
+    }
+
+    fn length(&self, a: &[f64]) -> f64 {
+        self.product(a, a).sqrt()
+    }
+
+    /// Change of the coordinates per change of the load factor; the tangent there is factorised.
+    fn rate(&self, path: &mut Path<'_>, q: &[f64], t: f64) -> Vec<f64> {
+        let [mut force, mut rate] = [vec![0.0; q.len()], vec![0.0; q.len()]];
+        path.system.external_force_rate(q, t, &mut force);
+        path.system.solve(&force, &mut rate);
+        rate
+    }
+}
+
+/// The cubic through both ends of a step, along a parameter from 0 to 1.
+struct Way<'a> {
+    from: &'a Point,
+    q: &'a [f64],
+    t: f64,
+    start: &'a Tangent,
+    end: Tangent,
+    chord: f64,
+}
+
+impl Way<'_> {
+    /// Coordinates and load factor, and their derivatives.
+    fn at(&self, u: f64) -> (Vec<f64>, f64, Vec<f64>) {
+        let value = |a, b, p, s| hermite(u, a, b, self.chord * p, self.chord * s);
+        let all = self.from.q.iter().zip(self.q).zip(self.start.q.iter().zip(&self.end.q));
+        let (q, rate) = all.map(|((a, b), (p, s))| value(*a, *b, *p, *s)).unzip();
+        (q, value(self.from.load.t, self.t, self.start.t, self.end.t).0, rate)
+    }
+
+    /// Work of the loads.
+    fn work(&self, path: &Path<'_>) -> f64 {
+        let mut force = vec![0.0; self.q.len()];
+        let points = Rule::Gauss(4).points().into_iter();
+        points
+            .map(|(u, weight)| {
+                let (q, t, rate) = self.at(u);
+                path.system.external_force(&q, t, &mut force);
+                weight * force.iter().zip(&rate).map(|(f, v)| f * v).sum::<f64>()
+            })
+            .sum()
+    }
+
+    /// Where the load factor turns back.
+    fn limit(&self) -> Option<f64> {
+        let slope = |u| hermite(u, self.from.load.t, self.t, self.chord * self.start.t, self.chord * self.end.t).1;
+        (slope(0.0) * slope(1.0) < 0.0).then(|| bisect(slope))
+    }
+
+    /// Where the load factor has a value that lies between those of the ends.
+    fn crossing(&self, t: f64) -> f64 {
+        bisect(|u| hermite(u, self.from.load.t, self.t, self.chord * self.start.t, self.chord * self.end.t).0 - t)
+    }
+}
+
+/// A root in [0, 1] of a function that changes its sign there.
+fn bisect(f: impl Fn(f64) -> f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    let sign = f(low);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if f(middle) * sign > 0.0 { low = middle } else { high = middle }
+    }
+    low
+}
+
+/// Value and derivative at `u` of the cubic with values `a`, `b` and slopes `p`, `s` at 0 and 1.
+fn hermite(u: f64, a: f64, b: f64, p: f64, s: f64) -> (f64, f64) {
+    let (c, d) = (3.0 * (b - a) - 2.0 * p - s, p + s - 2.0 * (b - a));
+    (a + u * (p + u * (c + u * d)), p + u * (2.0 * c + u * 3.0 * d))
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
