@@ -46,11 +46,11 @@ def test_run_writes_summary_and_states(scenes: Path, tmp_path: Path, capsys: pyt
     assert found["reached"] == pytest.approx(0.05)
     assert found["counts"]["elements"] == 4
     assert found["counts"]["dofs"] == 78
-    assert set(found["counts"]) == {"elements", "dofs", "steps", "rejected", "iterations", "factorizations"}
+    assert set(found["counts"]) == {"elements", "dofs", "steps", "rejected", "unsolved", "iterations", "factorizations"}
     assert set(found["seconds"]) == {"total", "setup", "assembly", "factorization", "solve"}
     assert found["probes"]["A"]["t"] == pytest.approx([0.0, 0.025, 0.05])
     assert found["probes"]["A"]["value"][0] == pytest.approx([0.3, 0.3, 0.0])
-    assert set(found["energy"]) == {"t", "kinetic", "membrane", "bending", "loads"}
+    assert set(found["energy"]) == {"t", "kinetic", "membrane", "bending", "loads", "dissipated"}
     with np.load(folder / "result.npz") as states:
         assert states["q"].shape == states["v"].shape == states["a"].shape == (3, 81)
         np.testing.assert_allclose(states["t"], [0.0, 0.025, 0.05])

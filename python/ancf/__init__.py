@@ -37,7 +37,7 @@ from ancf.result import Energy, Record, Result
 from ancf.run import Dynamic, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import simulate, solve_static
-from ancf.supports import Support
+from ancf.supports import Rotation, Shake, Support
 
 __all__ = [
     "Annulus",
@@ -58,7 +58,9 @@ __all__ = [
     "Record",
     "Rectangle",
     "Result",
+    "Rotation",
     "Scene",
+    "Shake",
     "SolveError",
     "Sphere",
     "Static",

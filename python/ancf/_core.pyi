@@ -4,6 +4,7 @@ Internal: users import `ancf`. Units are SI. `n` is the number of nodal coordina
 after node (x fastest), vector after vector (r, r_x, r_y, ...), three components each.
 """
 
+import os
 from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias, final
 
@@ -58,12 +59,25 @@ class Model:
         E: float,
         nu: float,
         density: float,
+        mass_damping: float,
+        viscosity: float,
         element: str,
         membrane: str | None,
         curvature: str | None,
     ) -> None: ...
     def fix(self, body: str, at: _At, coordinates: Sequence[str]) -> None: ...
     def clamp(self, body: str, at: _At) -> None: ...
+    def move_support(
+        self,
+        body: str,
+        at: _At,
+        coordinates: Sequence[str],  # empty: all
+        *,
+        translation: Sequence[tuple[float, float, float, float]] | None,  # rows t, x, y, z
+        shake: tuple[tuple[float, float, float], float] | None,  # amplitude, m, and frequency, Hz
+        rotation: tuple[tuple[float, float, float], tuple[float, float, float], Sequence[tuple[float, float]]]
+        | None,  # a point of the axis, its direction, rows t, angle
+    ) -> None: ...
     def add_gravity(self, acceleration: tuple[float, float, float], history: _History) -> None: ...
     def add_force(self, body: str, at: _At, force: tuple[float, float, float], history: _History) -> None: ...
     def add_line_load(self, body: str, at: _At, per_length: tuple[float, float, float], history: _History) -> None: ...
@@ -119,13 +133,13 @@ class Run:
         self,
     ) -> dict[
         str, _FloatArray
-    ]: ...  # kinetic, membrane, bending, loads: (states,) J; loads is the work done by the loads
+    ]: ...  # kinetic, membrane, bending, loads (their work), dissipated (by damping): (states,) J
     @property
     def momentum(self) -> _FloatArray: ...  # (states, 3) kg m/s
     @property
     def angular_momentum(self) -> _FloatArray: ...  # (states, 3) kg m2/s about the origin
     @property
-    def counts(self) -> dict[str, int]: ...  # elements, dofs, steps, rejected, iterations, factorizations
+    def counts(self) -> dict[str, int]: ...  # elements, dofs, steps, rejected, unsolved, iterations, factorizations
     @property
     def seconds(self) -> dict[str, float]: ...  # total, setup, assembly, factorization, solve
     @property
@@ -151,15 +165,20 @@ def simulate(
     model: Model,
     *,
     until: float,
-    step: float,
-    method: str,  # "hht" | "generalized_alpha"
+    # fixed: length (s), whether it may exceed the explicit limit; or rtol, atol, first, longest and shortest step
+    steps: tuple[float, bool] | tuple[float, float, float | None, float | None, float],
+    method: str,  # one of those of scene files
     alpha: float | None,
     rho_inf: float | None,
+    lumped: bool,
     outputs: Sequence[float],
     velocity: _FloatArray | None,  # (n,) at t = 0; None: at rest
     newton: str,
     tolerance: float,
     max_iterations: int,
+    reuse: bool,
+    checkpoint: str | os.PathLike[str] | None,  # a file that is replaced about every second
+    resume: str | os.PathLike[str] | None,  # such a file, to go on from
     threads: int | None,
     progress: Callable[[float], Any] | None,
 ) -> Run: ...

@@ -45,6 +45,8 @@ class Plate(Input, ABC):
             E=self.material.E,
             nu=self.material.nu,
             density=self.material.density,
+            mass_damping=self.material.mass_damping,
+            viscosity=self.material.viscosity,
             element=self.element,
             membrane=self.membrane,
             curvature=self.curvature,

@@ -61,6 +61,8 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument(
         "--animate", nargs="?", const="gif", choices=("gif", "mp4"), help="make motion.gif, or motion.mp4 with ffmpeg"
     )
+    run.add_argument("--checkpoint", type=Path, metavar="FILE", help="keep there what is needed to go on")
+    run.add_argument("--resume", type=Path, metavar="FILE", help="go on from a checkpoint, and keep it up to date")
     run.add_argument("--threads", type=_positive, metavar="N", help="default: all")
     run.add_argument("--quiet", action="store_true", help="no progress bar and no table")
     commands.add_parser("info", help="show versions, threads and CPU features")
@@ -82,7 +84,13 @@ def _run(options: argparse.Namespace) -> int:
         check_film(film)
     made = make_folder(folder)
     try:
-        result = scene.solve(threads=options.threads, progress=not options.quiet, throw=False)
+        result = scene.solve(
+            checkpoint=options.checkpoint or options.resume,
+            resume=options.resume,
+            threads=options.threads,
+            progress=not options.quiet,
+            throw=False,
+        )
     except InputError:
         remove_folders(made)
         raise

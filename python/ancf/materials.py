@@ -10,7 +10,7 @@ from ancf.inputs import Input, Positive
 
 
 class Material(Input):
-    """A linear elastic, isotropic material.
+    """A linear elastic, isotropic material, with damping if wanted.
 
     Parameters
     ----------
@@ -20,6 +20,10 @@ class Material(Input):
         Poisson's ratio, between -1 and 0.5, both excluded.
     density : float, optional
         kg/m3, not negative. Needed for motion and for gravity.
+    mass_damping : float, default 0
+        1/s, not negative: a force against the velocity, proportional to the mass.
+    viscosity : float, default 0
+        s, not negative: Kelvin-Voigt damping, a stress ``viscosity`` times that of the strain rate.
 
     Raises
     ------
@@ -34,3 +38,5 @@ class Material(Input):
     E: Positive
     nu: Annotated[float, Field(gt=-1, lt=0.5)]
     density: Annotated[float, Field(ge=0)] = 0.0
+    mass_damping: Annotated[float, Field(ge=0)] = 0.0
+    viscosity: Annotated[float, Field(ge=0)] = 0.0

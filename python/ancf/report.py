@@ -36,7 +36,7 @@ def _last_state(result: Result) -> list[str]:
     for probe in result.model.probes:
         values = _numbers(result.probes[probe.name].value[-1])
         rows.append((f"{probe.name} {probe.quantity}", values, QUANTITIES[probe.quantity].unit))
-    for name in ("kinetic", "membrane", "bending", "loads"):
+    for name in ("kinetic", "membrane", "bending", "loads", "dissipated"):
         rows.append((f"energy {name}", _numbers([getattr(result.energy, name)[-1]]), "J"))
     width = max(len(name) for name, _, _ in rows)
     return [f"  {name:{width}} {numbers} {unit}".rstrip() for name, numbers, unit in rows]

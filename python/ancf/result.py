@@ -49,7 +49,9 @@ class Energy:
     kinetic, membrane, bending : ndarray, shape (states,)
         J.
     loads : ndarray, shape (states,)
-        The work that the loads have done, J.
+        The work that the loads and moved supports have done, J.
+    dissipated : ndarray, shape (states,)
+        What damping has taken, J. What the balance still misses is the work of the integrator.
     """
 
     t: FloatArray
@@ -57,6 +59,7 @@ class Energy:
     membrane: FloatArray
     bending: FloatArray
     loads: FloatArray
+    dissipated: FloatArray
 
 
 @dataclass(frozen=True)
@@ -89,7 +92,7 @@ class Result:
     negative_pivots : ndarray of int, shape (states,)
         Negative eigenvalues of the tangent, 0 where the equilibrium is stable; -1 where they were not counted.
     counts : dict of str to int
-        elements, dofs, steps, rejected, iterations, factorizations.
+        elements, dofs, steps, rejected (of these unsolved: Newton failed), iterations, factorizations.
     seconds : dict of str to float
         total, setup, assembly, factorization, solve.
     """

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from itertools import pairwise
@@ -19,6 +20,9 @@ from ancf.model import Model
 
 _INTERVALS = 100
 
+Method: TypeAlias = Literal[
+    "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk"
+]
 ProgressCall: TypeAlias = Callable[[float], Any] | None
 
 
@@ -122,7 +126,7 @@ class Static(_Run):
 
 
 class Dynamic(_Run):
-    """Motion from rest, or from given velocities, in fixed steps.
+    """Motion from rest, or from given velocities, in fixed steps or with error control.
 
     Every result starts with the state at t = 0. Without `outputs` and `every` it has up to 100 more, equally spaced.
 
@@ -130,14 +134,27 @@ class Dynamic(_Run):
     ----------
     until : float
         s, greater than 0.
-    step : float
-        s, greater than 0.
-    method : {"hht", "generalized_alpha"}, default "hht"
-        HHT-alpha or generalized-alpha.
+    step : float, optional
+        Length of fixed steps, s. Either this or `rtol` is needed.
+    rtol : float, optional
+        Error control: the errors that the steps add to a position stay, together, below this times the size of the
+        body. From 1e-12 to below 1.
+    atol : float, default 0
+        The same in m, added.
+    first_step, max_step, min_step : float, optional
+        With error control: the first, longest and shortest step, s; where a shorter one is needed the run fails.
+    force : bool, default False
+        Let a fixed step of an explicit method exceed its limit of stability.
+    method : str, default "hht"
+        Implicit of order 2: "hht" (HHT-alpha), "generalized_alpha", "newmark" (trapezoidal rule), "tr_bdf2" (L-stable)
+        and "energy_momentum" (keeps energy and momenta). Of order 4: "esdirk" (L-stable). Explicit: "verlet" of order
+        2, "rk" (Dormand and Prince) of order 5.
     alpha : float, optional
         Of "hht", from -1/3 to 0; -0.05 if left out.
     rho_inf : float, optional
         Of "generalized_alpha", the spectral radius at infinite frequency, from 0 to 1; 0.9 if left out.
+    lumped : bool, default False
+        Of "verlet": use a diagonal mass matrix.
     outputs : sequence of float, optional
         Times of the states to record, s; they increase and lie in [0, until].
     every : float, optional
@@ -147,7 +164,9 @@ class Dynamic(_Run):
     tolerance : float, default 1e-8
         Of the last correction, relative to the size of the model.
     max_iterations : int, default 30
-        The run fails if a step needs more.
+        A step that needs more is cut with error control; otherwise the run fails.
+    reuse : bool, default False
+        Keep factorisations over iterations and steps while they converge fast.
 
     Raises
     ------
@@ -161,21 +180,38 @@ class Dynamic(_Run):
     history: ClassVar[History] = "constant"
 
     until: Positive
-    step: Positive
-    method: Literal["hht", "generalized_alpha"] = "hht"
+    step: Positive | None = None
+    rtol: Annotated[float, Field(ge=1e-12, lt=1)] | None = None
+    atol: Annotated[float, Field(ge=0)] = 0.0
+    first_step: Positive | None = None
+    max_step: Positive | None = None
+    min_step: Annotated[float, Field(ge=0)] = 0.0
+    force: bool = False
+    method: Method = "hht"
     alpha: Annotated[float, Field(ge=-1 / 3, le=0)] | None = None
     rho_inf: Annotated[float, Field(ge=0, le=1)] | None = None
     outputs: Sequence[float] | None = None
     every: Positive | None = None
+    lumped: bool = False
+    reuse: bool = False
 
     @model_validator(mode="after")
     def _agree(self) -> Self:
         mistakes = Mistakes()
-        if self.step > self.until:
+        if (self.step is None) == (self.rtol is None):
+            mistakes.add(("step",), "give either step, for fixed steps, or rtol, for error control", self.step)
+        if self.step is not None and self.step > self.until:
             mistakes.add(("step",), "must not be greater than until", self.step)
-        for name, method in (("alpha", "hht"), ("rho_inf", "generalized_alpha")):
-            if getattr(self, name) is not None and self.method != method:
+        for name, method in (("alpha", "hht"), ("rho_inf", "generalized_alpha"), ("lumped", "verlet")):
+            if name in self.model_fields_set and getattr(self, name) is not None and self.method != method:
                 mistakes.add((name,), f'is for method = "{method}" only', getattr(self, name))
+        for name in ("atol", "first_step", "max_step", "min_step"):
+            if name in self.model_fields_set and getattr(self, name) is not None and self.rtol is None:
+                mistakes.add((name,), "is for error control, with rtol, only", getattr(self, name))
+        if self.force and self.step is None:
+            mistakes.add(("force",), "is for fixed steps only", self.force)
+        if self.max_step is not None and self.min_step > self.max_step:
+            mistakes.add(("min_step",), "must not be greater than max_step", self.min_step)
         if self.outputs is not None and self.every is not None:
             mistakes.add(("every",), "give either every or outputs", self.every)
         if self.outputs is not None:
@@ -195,10 +231,17 @@ class Dynamic(_Run):
         if self.outputs is not None:
             return [0.0, *(time for time in self.outputs if time > 0)]
         if self.every is None:
-            intervals = max(1, min(_INTERVALS, round(self.until / self.step)))
+            steps = _INTERVALS if self.step is None else round(self.until / self.step)
+            intervals = max(1, min(_INTERVALS, steps))
             return [self.until * (index / intervals) for index in range(intervals + 1)]
         whole = int(self.until / self.every * (1 - 1e-12))
         return [*(self.every * index for index in range(whole + 1)), self.until]
+
+    def _steps(self) -> tuple[float, bool] | tuple[float, float, float | None, float | None, float]:
+        if self.step is not None:
+            return self.step, self.force
+        assert self.rtol is not None
+        return self.rtol, self.atol, self.first_step, self.max_step, self.min_step
 
     def check(self, model: Model) -> None:
         """Raise `InputError` if a body has no mass or a load is made for statics."""
@@ -215,22 +258,28 @@ class Dynamic(_Run):
         core: _core.Model,
         threads: int | None,
         progress: ProgressCall,
+        *,
         velocity: NDArray[np.float64] | None = None,
+        checkpoint: str | os.PathLike[str] | None = None,
+        resume: str | os.PathLike[str] | None = None,
     ) -> _core.Run:
         """Run the compiled model."""
-        hht = self.method == "hht"
         return _core.simulate(
             core,
             until=self.until,
-            step=self.step,
+            steps=self._steps(),
             method=self.method,
-            alpha=(-0.05 if self.alpha is None else self.alpha) if hht else None,
-            rho_inf=None if hht else (0.9 if self.rho_inf is None else self.rho_inf),
+            alpha=self.alpha,
+            rho_inf=self.rho_inf,
+            lumped=self.lumped,
             outputs=self.times(),
             velocity=velocity,
             newton=self.newton,
             tolerance=self.tolerance,
             max_iterations=self.max_iterations,
+            reuse=self.reuse,
+            checkpoint=checkpoint,
+            resume=resume,
             threads=threads,
             progress=progress,
         )

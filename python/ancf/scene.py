@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -47,13 +48,21 @@ class Scene:
     model: Model
     run: Static | Dynamic
 
-    def solve(self, *, threads: int | None = None, progress: Progress = None, throw: bool = True) -> Result:
+    def solve(
+        self,
+        *,
+        checkpoint: str | os.PathLike[str] | None = None,
+        resume: str | os.PathLike[str] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+        throw: bool = True,
+    ) -> Result:
         """Run the scene.
 
         Parameters
         ----------
-        threads, progress, throw : optional
-            As in `solve_static` and `simulate`.
+        checkpoint, resume, threads, progress, throw : optional
+            As in `solve_static` and `simulate`; the first two are for motion only.
 
         Returns
         -------
@@ -69,8 +78,13 @@ class Scene:
         Interrupted
             On Ctrl-C; `Interrupted.result` holds what it had.
         """
+        start = None
+        if isinstance(self.run, Dynamic):
+            start = partial(self.run.start, checkpoint=checkpoint, resume=resume)
+        elif checkpoint is not None or resume is not None:
+            raise InputError(Mistake(("checkpoint",), "is for motion only"))
         with _scene_paths({}):
-            return solve(self.model, self.run, threads=threads, progress=progress, throw=throw)
+            return solve(self.model, self.run, threads=threads, progress=progress, throw=throw, start=start)
 
 
 def load_scene(path: str | os.PathLike[str]) -> Scene:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Literal
@@ -14,7 +15,7 @@ from ancf.errors import InputError, Interrupted, Mistake, SolveError, from_core,
 from ancf.model import Model
 from ancf.progress import Progress, meter
 from ancf.result import Result
-from ancf.run import Dynamic, ProgressCall, Static
+from ancf.run import Dynamic, Method, ProgressCall, Static
 
 _Start = Callable[[_core.Model, int | None, ProgressCall], _core.Run]
 
@@ -76,16 +77,26 @@ def simulate(
     model: Model,
     *,
     until: float,
-    step: float,
-    method: Literal["hht", "generalized_alpha"] = "hht",
+    step: float | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
+    first_step: float | None = None,
+    max_step: float | None = None,
+    min_step: float | None = None,
+    force: bool = False,
+    method: Method = "hht",
     alpha: float | None = None,
     rho_inf: float | None = None,
+    lumped: bool | None = None,
     outputs: Sequence[float] | None = None,
     every: float | None = None,
     velocity: ArrayLike | None = None,
     newton: Literal["mip", "plain"] = "mip",
     tolerance: float = 1e-8,
     max_iterations: int = 30,
+    reuse: bool = False,
+    checkpoint: str | os.PathLike[str] | None = None,
+    resume: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: Progress = None,
     throw: bool = True,
@@ -96,10 +107,15 @@ def simulate(
     ----------
     model : Model
         What moves.
-    until, step, method, alpha, rho_inf, outputs, every, newton, tolerance, max_iterations : optional
-        As in `Dynamic`; the first two are needed.
+    until, step, rtol, atol, first_step, max_step, min_step, force, method, alpha, rho_inf, lumped, outputs, every, \
+newton, tolerance, max_iterations, reuse : optional
+        As in `Dynamic`; `until` is needed, and either `step` or `rtol`.
     velocity : array_like, shape (n,), optional
         Velocities of the nodal coordinates at t = 0, in the order of `Model.nodal_coordinates`; at rest if left out.
+    checkpoint : str or path, optional
+        A file that is replaced, in one go, about every second and at the end: what is needed to go on.
+    resume : str or path, optional
+        Such a file of the same model and options, to go on from: to the same bits as without a stop.
     threads : int, optional
         How many; all if left out. The result does not depend on it.
     progress : bool or callable, optional
@@ -121,19 +137,31 @@ def simulate(
     Interrupted
         On Ctrl-C; `Interrupted.result` holds what it had.
     """
+    given: dict[str, Any] = {
+        "step": step,
+        "rtol": rtol,
+        "atol": atol,
+        "first_step": first_step,
+        "max_step": max_step,
+        "min_step": min_step,
+        "alpha": alpha,
+        "rho_inf": rho_inf,
+        "lumped": lumped,
+    }
     run = Dynamic(
         until=until,
-        step=step,
+        force=force,
         method=method,
-        alpha=alpha,
-        rho_inf=rho_inf,
         outputs=outputs,
         every=every,
         newton=newton,
         tolerance=tolerance,
         max_iterations=max_iterations,
+        reuse=reuse,
+        **{name: value for name, value in given.items() if value is not None},
     )
-    start = None if velocity is None else partial(run.start, velocity=_check_velocity(model, velocity))
+    given_velocity = None if velocity is None else _check_velocity(model, velocity)
+    start = partial(run.start, velocity=given_velocity, checkpoint=checkpoint, resume=resume)
     return solve(model, run, threads=threads, progress=progress, throw=throw, start=start)
 
 

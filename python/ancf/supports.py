@@ -1,21 +1,55 @@
-"""Supports: nodal coordinates that keep their value at rest."""
+"""Supports: nodal coordinates that keep their value at rest, or move as prescribed."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Self
+from typing import Annotated, Self
 
-from pydantic import model_validator
+from pydantic import PlainValidator, model_validator
 
 from ancf import _core
 from ancf.bodies import NODAL_VECTORS
 from ancf.errors import InputError, Mistake, Mistakes
-from ancf.inputs import OnBody
+from ancf.inputs import Input, OnBody, Positive, Vector, table
 from ancf.places import Anywhere
 
 
+class Shake(Input):
+    """A harmonic translation, ``amplitude * sin(2 pi frequency t)``.
+
+    Parameters
+    ----------
+    amplitude : three floats
+        m.
+    frequency : float
+        Hz, greater than 0.
+    """
+
+    amplitude: Vector
+    frequency: Positive
+
+
+class Rotation(Input):
+    """A rotation about a fixed axis.
+
+    Parameters
+    ----------
+    axis : three floats
+        Its direction.
+    point : three floats, default the origin
+        A point on it, m.
+    angle : sequence of pairs
+        Rows [t, angle], s and rad, joined by a smooth curve that begins at rest with the angle 0 and goes on with
+        constant velocity after the last.
+    """
+
+    axis: Vector
+    point: Vector = (0.0, 0.0, 0.0)
+    angle: Sequence[tuple[float, float]]
+
+
 class Support(OnBody):
-    """Nodal coordinates that keep their value at rest, at a place of a body.
+    """Nodal coordinates that keep their value at rest, or move as prescribed, at a place of a body.
 
     Parameters
     ----------
@@ -29,6 +63,13 @@ class Support(OnBody):
         natural coordinates.
     clamp : bool, default False
         Fix the position and all gradients instead.
+    translation : sequence of four floats, optional
+        Motion of the support: rows [t, x, y, z], s and m, joined by a smooth curve that begins at rest with zero and
+        goes on with constant velocity after the last. In statics supports stay where they are.
+    shake : Shake, optional
+        A harmonic translation, added.
+    rotation : Rotation, optional
+        A rotation before the translation.
 
     Raises
     ------
@@ -44,6 +85,9 @@ class Support(OnBody):
     at: Anywhere
     fix: Sequence[str] = ()
     clamp: bool = False
+    translation: Sequence[tuple[float, float, float, float]] | None = None
+    shake: Annotated[Shake | None, PlainValidator(table(Shake))] = None
+    rotation: Annotated[Rotation | None, PlainValidator(table(Rotation))] = None
 
     @model_validator(mode="after")
     def _fix_or_clamp(self) -> Self:
@@ -63,7 +107,17 @@ class Support(OnBody):
 
     def add(self, core: _core.Model) -> None:
         """Add the support to the compiled model."""
-        if self.clamp:
+        if self.translation or self.shake or self.rotation:
+            shake, turn = self.shake, self.rotation
+            core.move_support(
+                self.body,
+                self.at,
+                self.fix,
+                translation=self.translation,
+                shake=(shake.amplitude, shake.frequency) if shake else None,
+                rotation=(turn.point, turn.axis, turn.angle) if turn else None,
+            )
+        elif self.clamp:
             core.clamp(self.body, self.at)
         else:
             core.fix(self.body, self.at, self.fix)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ancf_core::Material;
 use ancf_core::assembly::System;
-use ancf_core::dynamics::{self, GeneralizedAlpha};
+use ancf_core::dynamics::{self, Method, Steps};
 use ancf_core::element::{Kind, Membrane, NodalVector, Want};
 use ancf_core::mesh::Surface;
 use ancf_core::model::{Fix, History, Load, LoadKind, Model, Plate};
@@ -45,8 +45,8 @@ fn motion(criterion: &mut Criterion) {
     let model = pendulum();
     let options = dynamics::Options {
         until: 0.02,
-        step: 1e-3,
-        method: GeneralizedAlpha::hht(-0.05).unwrap(),
+        steps: Steps::fixed(1e-3),
+        method: Method::Hht { alpha: -0.05 },
         outputs: vec![0.02],
         velocity: None,
         newton: Default::default(),
@@ -54,7 +54,7 @@ fn motion(criterion: &mut Criterion) {
     criterion.bench_function("8 x 8 pendulum, 20 steps", |bencher| {
         bencher.iter(|| {
             let mut system = System::new(Arc::clone(&model)).unwrap();
-            let run = dynamics::simulate(&mut system, &options, &mut Vec::new()).unwrap();
+            let run = dynamics::simulate(&mut system, &options, None, &mut Vec::new()).unwrap();
             assert_eq!(run.outcome, Outcome::Ok);
         });
     });

@@ -68,7 +68,7 @@ pub mod statics;
 pub mod strain;
 
 pub use error::InputError;
-pub use material::Material;
+pub use material::{Damping, Material};
 
 /// The instruction set that the kernels use on this machine, and how many elements they evaluate side by side.
 pub fn simd() -> (&'static str, usize) {

@@ -9,6 +9,16 @@ pub struct Material {
     young: f64,
     poisson: f64,
     density: f64,
+    damping: Damping,
+}
+
+/// Linear damping of a material.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// Force `mass M v`, 1/s.
+    pub mass: f64,
+    /// Kelvin-Voigt: stress `viscosity W d(eps)/dt` beside the elastic one, s.
+    pub viscosity: f64,
 }
 
 impl Material {
@@ -35,7 +45,24 @@ impl Material {
             density >= 0.0 && density.is_finite(),
             "zero or a positive number, kg/m3",
         )?;
-        Ok(Self { young, poisson, density })
+        Ok(Self { young, poisson, density, damping: Damping::default() })
+    }
+
+    /// The same material with damping.
+    ///
+    /// # Errors
+    ///
+    /// Both numbers must be finite and not negative.
+    pub fn with_damping(self, damping: Damping) -> Result<Self, InputError> {
+        let valid = |x: f64| x >= 0.0 && x.is_finite();
+        InputError::check("mass_damping", damping.mass, valid(damping.mass), "zero or a positive number, 1/s")?;
+        InputError::check("viscosity", damping.viscosity, valid(damping.viscosity), "zero or a positive number, s")?;
+        Ok(Self { damping, ..self })
+    }
+
+    /// The damping.
+    pub fn damping(&self) -> Damping {
+        self.damping
     }
 
     /// Density, kg/m3.

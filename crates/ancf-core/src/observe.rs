@@ -1,6 +1,7 @@
 //! What a solve tells while it runs, and how it is stopped.
 
 use crate::assembly::StrainEnergy;
+use crate::dynamics::Checkpoint;
 
 /// A state that was accepted: an output of a solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,8 +18,10 @@ pub struct State {
     pub strain: StrainEnergy,
     /// Kinetic energy, J.
     pub kinetic: f64,
-    /// Work done by the loads since the start, J.
+    /// Work done by the loads and by moved supports since the start, J.
     pub work: f64,
+    /// Energy that damping has taken since the start, J; that of an integrator itself is what the balance misses.
+    pub dissipated: f64,
     /// Momentum, kg m/s.
     pub momentum: [f64; 3],
     /// Angular momentum about the origin, kg m2/s.
@@ -34,6 +37,14 @@ pub trait Observer {
 
     /// Time (or load factor) that has been reached.
     fn reached(&mut self, _t: f64) {}
+
+    /// Whether [`checkpoint`](Self::checkpoint) will ever ask for one.
+    fn wants_checkpoints(&self) -> bool {
+        false
+    }
+
+    /// A step of a motion was accepted, or the run has ended (`last`); `make` gives the last accepted step to go on from.
+    fn checkpoint(&mut self, _make: &dyn Fn() -> Checkpoint, _last: bool) {}
 
     /// Whether to stop; asked before every Newton iteration.
     fn stop(&self) -> bool {

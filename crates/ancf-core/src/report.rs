@@ -37,6 +37,8 @@ pub struct Counts {
     pub steps: usize,
     /// Steps that were tried and not accepted.
     pub rejected: usize,
+    /// Those of them whose equations could not be solved; the others had too large an error.
+    pub unsolved: usize,
     /// Newton iterations.
     pub iterations: usize,
     /// Numeric factorisations.

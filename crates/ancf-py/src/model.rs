@@ -6,9 +6,9 @@ use ancf_core::assembly::System;
 use ancf_core::element::{Kind, Membrane, Want};
 use ancf_core::evaluate::{MaterialPoint, Quantity};
 use ancf_core::mesh::Place;
-use ancf_core::model::{Fix, History, Load, LoadKind, Plate};
+use ancf_core::model::{Course, Fix, History, Load, LoadKind, Plate, SupportMotion};
 use ancf_core::strain::CurvatureLaw;
-use ancf_core::{InputError, Material, model};
+use ancf_core::{Damping, InputError, Material, model};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -44,6 +44,8 @@ pub struct Model {
     system: Mutex<Option<System>>,
 }
 
+/// A point of an axis, its direction, and rows [t, angle].
+type Turn = ([f64; 3], [f64; 3], Vec<[f64; 2]>);
 /// Rows, columns and values of a sparse matrix.
 type Triplets<'py> = (Bound<'py, PyArray1<u64>>, Bound<'py, PyArray1<u64>>, Bound<'py, PyArray1<f64>>);
 
@@ -115,7 +117,7 @@ impl Model {
         Self::default()
     }
 
-    #[pyo3(signature = (name, shape, divisions, *, thickness, E, nu, density, element, membrane, curvature))]
+    #[pyo3(signature = (name, shape, divisions, *, thickness, E, nu, density, mass_damping, viscosity, element, membrane, curvature))]
     #[expect(clippy::too_many_arguments, non_snake_case, reason = "keyword arguments in Python, named as in mechanics")]
     fn add_body(
         &mut self,
@@ -127,12 +129,16 @@ impl Model {
         E: f64,
         nu: f64,
         density: f64,
+        mass_damping: f64,
+        viscosity: f64,
         element: &str,
         membrane: Option<&str>,
         curvature: Option<&str>,
     ) -> PyResult<()> {
+        let damping = Damping { mass: mass_damping, viscosity };
+        let material = Material::new(E, nu, density).and_then(|material| material.with_damping(damping));
         let plate = Plate {
-            material: checked(py, Material::new(E, nu, density))?,
+            material: checked(py, material)?,
             thickness,
             element: named(py, "element", element, &Kind::ALL, Kind::name)?,
             membrane: membrane.map(|name| named(py, "membrane", name, &Membrane::ALL, Membrane::name)).transpose()?,
@@ -151,6 +157,39 @@ impl Model {
             checked(py, self.edit().fix(id, place, fix))?;
         }
         Ok(())
+    }
+
+    #[pyo3(signature = (body, at, coordinates, *, translation, shake, rotation))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
+    fn move_support(
+        &mut self,
+        py: Python<'_>,
+        body: &str,
+        at: At,
+        coordinates: Vec<String>,
+        translation: Option<Vec<[f64; 4]>>,
+        shake: Option<([f64; 3], f64)>,
+        rotation: Option<Turn>,
+    ) -> PyResult<()> {
+        let place = Self::place(py, at)?;
+        let id = checked(py, self.model.find(body))?;
+        let named = coordinates.iter().map(|name| checked(py, name.parse())).collect::<PyResult<Vec<Fix>>>()?;
+        let all = self.model.body(id).nodal_vectors().iter().map(|vector| Fix { vector: *vector, component: None });
+        let fixes = if named.is_empty() { all.collect() } else { named };
+        let mut motion = SupportMotion::default();
+        for (axis, direction) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
+            if let Some(rows) = &translation {
+                let rows = rows.iter().map(|row| [row[0], row[axis + 1]]).collect();
+                motion.translation.push((direction, checked(py, Course::table(rows))?));
+            }
+        }
+        if let Some((amplitude, frequency)) = shake {
+            motion.translation.push((amplitude, Course::Sine { amplitude: 1.0, frequency }));
+        }
+        if let Some((point, axis, angle)) = rotation {
+            motion.rotation = Some((point, axis, checked(py, Course::table(angle))?));
+        }
+        checked(py, self.edit().move_support(id, place, &fixes, motion))
     }
 
     fn clamp(&mut self, py: Python<'_>, body: &str, at: At) -> PyResult<()> {

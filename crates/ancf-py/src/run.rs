@@ -113,6 +113,7 @@ impl Run {
         energy.set_item("membrane", self.series(py, |state| state.strain.membrane))?;
         energy.set_item("bending", self.series(py, |state| state.strain.bending))?;
         energy.set_item("loads", self.series(py, |state| state.work))?;
+        energy.set_item("dissipated", self.series(py, |state| state.dissipated))?;
         Ok(energy)
     }
 
@@ -134,6 +135,7 @@ impl Run {
         dictionary.set_item("dofs", counts.dofs)?;
         dictionary.set_item("steps", counts.steps)?;
         dictionary.set_item("rejected", counts.rejected)?;
+        dictionary.set_item("unsolved", counts.unsolved)?;
         dictionary.set_item("iterations", counts.iterations)?;
         dictionary.set_item("factorizations", counts.factorizations)?;
         Ok(dictionary)

@@ -1,5 +1,6 @@
 //! Running a solve: it works in a thread of its own, while Python's thread shows progress and listens for Ctrl-C.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
@@ -7,7 +8,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use ancf_core::assembly::System;
-use ancf_core::dynamics::{self, GeneralizedAlpha};
+use ancf_core::dynamics::{self, Checkpoint, Method, Steps, Tolerances};
 use ancf_core::linear::LinearError;
 use ancf_core::nonlinear::{Options as NewtonOptions, Variant};
 use ancf_core::observe::{Observer, State};
@@ -23,6 +24,8 @@ use crate::run::Run;
 
 /// How often Python hears of progress and is asked for signals.
 const PERIOD: Duration = Duration::from_millis(50);
+/// How old the checkpoint in the file may become.
+const BETWEEN_CHECKPOINTS: Duration = Duration::from_secs(1);
 /// How long a solve that was stopped may take to answer; it is left behind after that.
 const PATIENCE: Duration = Duration::from_millis(100);
 
@@ -30,6 +33,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 enum Event {
     State(State),
     Reached(f64),
+    /// A checkpoint could not be written.
+    Unsaved(std::io::Error),
     End(Result<report::Run, SolveError>),
 }
 
@@ -45,10 +50,34 @@ struct Messenger {
     events: Sender<Event>,
     stop: Arc<AtomicBool>,
     told: Instant,
+    saved: Option<Saved>,
+}
+
+/// A file from which a motion can be resumed.
+struct Saved {
+    path: PathBuf,
+    /// Outputs so far.
+    states: Vec<State>,
+    written: Option<Instant>,
+}
+
+impl Saved {
+    /// Replaces the file by one for the present step, in one go, so that there is always a whole one.
+    fn write(&mut self, checkpoint: &Checkpoint) -> std::io::Result<()> {
+        let mut temporary = self.path.clone().into_os_string();
+        temporary.push(".new");
+        std::fs::write(&temporary, checkpoint.to_bytes(&self.states))?;
+        std::fs::rename(temporary, &self.path)?;
+        self.written = Some(Instant::now());
+        Ok(())
+    }
 }
 
 impl Observer for Messenger {
     fn state(&mut self, state: State) {
+        if let Some(saved) = &mut self.saved {
+            saved.states.push(state.clone());
+        }
         // Nobody listens any more when the solve was left behind; it stops at its next iteration.
         let _ = self.events.send(Event::State(state));
     }
@@ -57,6 +86,20 @@ impl Observer for Messenger {
         if self.told.elapsed() >= PERIOD {
             self.told = Instant::now();
             let _ = self.events.send(Event::Reached(t));
+        }
+    }
+
+    fn wants_checkpoints(&self) -> bool {
+        self.saved.is_some()
+    }
+
+    fn checkpoint(&mut self, make: &dyn Fn() -> Checkpoint, last: bool) {
+        let Some(saved) = &mut self.saved else { return };
+        let recent = saved.written.is_some_and(|written| written.elapsed() < BETWEEN_CHECKPOINTS);
+        if (last || !recent)
+            && let Err(error) = saved.write(&make())
+        {
+            let _ = self.events.send(Event::Unsaved(error));
         }
     }
 
@@ -71,26 +114,30 @@ fn run(
     model: &Model,
     threads: Option<usize>,
     progress: Option<&Bound<'_, PyAny>>,
+    before: Vec<State>,
+    file: Option<PathBuf>,
     solve: impl FnOnce(&mut System, &mut dyn Observer) -> Result<report::Run, InputError> + Send + 'static,
 ) -> PyResult<Run> {
     let model = model.core();
     let coordinates = model.reference().len();
     let (events, mut receiver) = channel();
     let stop = Arc::new(AtomicBool::new(false));
-    let mut messenger = Messenger { events: events.clone(), stop: Arc::clone(&stop), told: Instant::now() };
+    let saved = file.map(|path| Saved { path, states: before.clone(), written: None });
+    let mut states = before;
+    let mut messenger = Messenger { events: events.clone(), stop: Arc::clone(&stop), told: Instant::now(), saved };
     let work = move || start(model, threads, &mut messenger, solve);
     let worker = thread::spawn(move || {
         let end = work();
         let _ = events.send(Event::End(end));
     });
 
-    let mut states = Vec::new();
     let mut reached = 0.0;
     let mut told = Instant::now();
     let exception = loop {
         match py.detach(|| receive(&mut receiver, PERIOD)) {
             Ok(Event::State(state)) => states.push(state),
             Ok(Event::Reached(t)) => reached = t,
+            Ok(Event::Unsaved(error)) => break error.into(),
             Ok(Event::End(end)) => {
                 // A signal that came just before the end counts.
                 let exception = py.check_signals().err();
@@ -118,6 +165,7 @@ fn run(
         match py.detach(|| receive(&mut receiver, left)) {
             Ok(Event::State(state)) => states.push(state),
             Ok(Event::Reached(t)) => reached = t,
+            Ok(Event::Unsaved(_)) => {}
             Ok(Event::End(end)) => return finish(py, end, states, coordinates, reached, Some(exception)),
             Err(_) => return Ok(Run::new(None, states, coordinates, reached, Some(exception))),
         }
@@ -165,13 +213,19 @@ fn finish(
     }
 }
 
-fn newton_options(py: Python<'_>, newton: &str, tolerance: f64, max_iterations: usize) -> PyResult<NewtonOptions> {
+fn newton_options(
+    py: Python<'_>,
+    newton: &str,
+    tolerance: f64,
+    max_iterations: usize,
+    reuse: bool,
+) -> PyResult<NewtonOptions> {
     let variant = match newton {
         "mip" => Variant::MixedIntegrationPoint,
         "plain" => Variant::Plain,
         _ => return Err(input_error(py, &InputError::new("newton", format!("\"{newton}\""), "mip, plain"))),
     };
-    Ok(NewtonOptions { variant, tolerance, max_iterations })
+    Ok(NewtonOptions { variant, tolerance, max_iterations, reuse })
 }
 
 /// Finds equilibria along a load path.
@@ -190,42 +244,77 @@ pub fn solve_static(
     threads: Option<usize>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Run> {
-    let newton = newton_options(py, newton, tolerance, max_iterations)?;
-    let options = statics::Options { load_factors, newton, first_step, min_step };
-    run(py, model, threads, progress, move |system, observer| statics::solve(system, &options, observer))
+    let newton = newton_options(py, newton, tolerance, max_iterations, false)?;
+    let options = statics::Options { load_factors, newton, first_step, min_step, ..statics::Options::default() };
+    run(py, model, threads, progress, Vec::new(), None, move |system, observer| {
+        statics::solve(system, &options, observer)
+    })
+}
+
+/// The length of steps as Python says it.
+#[derive(FromPyObject)]
+pub enum StepLength {
+    /// Fixed steps: their length, s, and whether an explicit method may exceed its limit.
+    #[pyo3(transparent)]
+    Fixed((f64, bool)),
+    /// Error control: `rtol`, `atol`, first, longest and shortest step.
+    #[pyo3(transparent)]
+    Controlled((f64, f64, Option<f64>, Option<f64>, f64)),
+}
+
+impl From<StepLength> for Steps {
+    fn from(length: StepLength) -> Self {
+        match length {
+            StepLength::Fixed((step, force)) => Self::Fixed { step, force },
+            StepLength::Controlled((rtol, atol, first_step, max_step, min_step)) => {
+                let max_step = max_step.unwrap_or(f64::INFINITY);
+                Self::Controlled(Tolerances { rtol, atol, first_step, max_step, min_step })
+            }
+        }
+    }
 }
 
 /// Integrates a motion.
 #[pyfunction]
-#[pyo3(signature = (model, *, until, step, method, alpha, rho_inf, outputs, velocity, newton, tolerance, max_iterations, threads, progress))]
+#[pyo3(signature = (model, *, until, steps, method, alpha, rho_inf, lumped, outputs, velocity, newton, tolerance, max_iterations, reuse, checkpoint, resume, threads, progress))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub fn simulate(
     py: Python<'_>,
     model: &Model,
     until: f64,
-    step: f64,
+    steps: StepLength,
     method: &str,
     alpha: Option<f64>,
     rho_inf: Option<f64>,
+    lumped: bool,
     outputs: Vec<f64>,
     velocity: Option<PyReadonlyArray1<'_, f64>>,
     newton: &str,
     tolerance: f64,
     max_iterations: usize,
+    reuse: bool,
+    checkpoint: Option<PathBuf>,
+    resume: Option<PathBuf>,
     threads: Option<usize>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Run> {
-    let newton = newton_options(py, newton, tolerance, max_iterations)?;
-    let method = match method {
-        "hht" => checked(py, GeneralizedAlpha::hht(alpha.unwrap_or(-0.05)))?,
-        "generalized_alpha" => checked(py, GeneralizedAlpha::from_spectral_radius(rho_inf.unwrap_or(0.9)))?,
-        _ => {
-            let error = InputError::new("method", format!("\"{method}\""), "hht, generalized_alpha");
-            return Err(input_error(py, &error));
-        }
+    let newton = newton_options(py, newton, tolerance, max_iterations, reuse)?;
+    let method = match checked(py, Method::find(method))? {
+        Method::Hht { alpha: usual } => Method::Hht { alpha: alpha.unwrap_or(usual) },
+        Method::GeneralizedAlpha { rho_inf: usual } => Method::GeneralizedAlpha { rho_inf: rho_inf.unwrap_or(usual) },
+        Method::Verlet { .. } => Method::Verlet { lumped },
+        other => other,
     };
     let n = model.core().reference().len();
     let velocity = velocity.map(|v| coordinates(py, "velocity", &v, n)).transpose()?;
-    let options = dynamics::Options { until, step, method, outputs, velocity, newton };
-    run(py, model, threads, progress, move |system, observer| dynamics::simulate(system, &options, observer))
+    let options = dynamics::Options { until, steps: steps.into(), method, outputs, velocity, newton };
+    let mut states = Vec::new();
+    let mut from = None;
+    if let Some(path) = resume {
+        let (checkpoint, before) = checked(py, Checkpoint::from_bytes(&std::fs::read(path)?))?;
+        (from, states) = (Some(checkpoint), before);
+    }
+    run(py, model, threads, progress, states, checkpoint, move |system, observer| {
+        dynamics::simulate(system, &options, from, observer)
+    })
 }

@@ -9,8 +9,9 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 
-use crate::element::{ElementBlock, Outcome, Want};
+use crate::element::{At, ElementBlock, NodalVector, Outcome, Want};
 use crate::linear::{Factorization, Inertia, LinearError, Pattern, SymmetricMatrix, gmres};
+use crate::material::Damping;
 use crate::mesh::Place;
 use crate::model::{History, LoadKind, Model};
 use crate::quadrature::Rule;
@@ -49,6 +50,17 @@ impl StrainEnergy {
     }
 }
 
+/// Strain rates, summed over all samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StrainRates {
+    /// Power that the viscosity of the materials takes, W.
+    pub power: f64,
+    /// Power of a viscosity of one, W/s.
+    pub square: f64,
+    /// Strain energy gained over a step that the mean elastic force misses, J.
+    pub missed: f64,
+}
+
 /// Accuracy of solutions with the skew part of the followers: Newton corrects what is left.
 const SKEW_TOLERANCE: f64 = 1e-8;
 /// Most products with the skew part in a solution.
@@ -71,6 +83,8 @@ pub struct System {
     scatter: Scatter,
     mass: SymmetricMatrix,
     weight: Vec<f64>,
+    /// Of each nodal vector; empty if no material has it.
+    mass_damping: Vec<f64>,
     dead: Vec<Dead>,
     followers: Vec<Follower>,
     /// The state of the last tangent, for the skew part of the followers: coordinates, and the factor of each load.
@@ -95,6 +109,7 @@ impl System {
         let blocks: Vec<_> = model.bodies().iter().map(|body| body.elements(model.reference())).collect();
         let scatter = Scatter::new(&numbering)?;
         let (mass, weight) = mass_matrix(&model, &blocks)?;
+        let mass_damping = mass_damping(&model, &blocks);
         let factorization = Factorization::new(Arc::clone(scatter.pattern()))?;
         let mut system = Self {
             values: vec![0.0; scatter.pattern().nnz()],
@@ -109,6 +124,7 @@ impl System {
             numbering,
             blocks,
             scatter,
+            mass_damping,
             mass,
             weight,
             factorization,
@@ -243,8 +259,13 @@ impl System {
     ///
     /// Dufva and Shabana (2005), (25), (35).
     pub fn internal_force(&mut self, q: &[f64], force: &mut [f64]) -> StrainEnergy {
+        self.force(At::rest(q), force)
+    }
+
+    /// Elastic and viscous force on all coordinates, and the strain energy.
+    pub fn force(&mut self, at: At<'_>, force: &mut [f64]) -> StrainEnergy {
         let start = Instant::now();
-        self.evaluate(q, None);
+        self.evaluate(at, None);
         self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
         self.timers.assembly += start.elapsed();
         self.energy()
@@ -299,29 +320,58 @@ impl System {
         dead.chain(followers).sum()
     }
 
-    /// Elastic force as [`internal_force`](Self::internal_force), and the tangent `want.mass M + want.stiffness (dQ_k/dq
-    /// - dQ_e/dq)`, which is kept for [`factorize`](Self::factorize). Of the loads' part it is the symmetric half.
+    /// The tangent of elastic forces at rest, as [`assemble_at`](Self::assemble_at).
     pub fn assemble(&mut self, q: &[f64], t: f64, want: Want<'_>, force: &mut [f64]) -> StrainEnergy {
+        self.assemble_at(At::rest(q), t, want, force)
+    }
+
+    /// Forces as [`force`](Self::force), and the tangent `want.mass M + want.stiffness (dQ_k/dq - dQ_e/dq)`, damping
+    /// included, which is kept for [`factorize`](Self::factorize). It is symmetric: of loads that follow the surface it
+    /// has the symmetric half, of viscous and mean forces what stays when `B` does not change within a step.
+    pub fn assemble_at(&mut self, at: At<'_>, t: f64, want: Want<'_>, force: &mut [f64]) -> StrainEnergy {
         let start = Instant::now();
-        self.evaluate(q, Some(want));
+        self.evaluate(at, Some(want));
         self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
         if !self.followers.is_empty() {
             let factors = self.followers.iter().map(|load| want.stiffness * load.history.factor(t));
-            self.tangent_at = (q.to_vec(), factors.collect());
+            self.tangent_at = (at.q.to_vec(), factors.collect());
         }
         for (load, &factor) in self.followers.iter().zip(&self.tangent_at.1) {
             let elements = self.blocks[load.block].as_ref();
-            load.subtract_stiffness(elements, self.model.reference(), q, factor, &mut self.outcomes[load.block]);
+            load.subtract_stiffness(elements, self.model.reference(), at.q, factor, &mut self.outcomes[load.block]);
         }
         self.scatter.sum(&self.blocks, &self.outcomes, &mut self.values);
         self.timers.assembly += start.elapsed();
         self.energy()
     }
 
-    fn evaluate(&mut self, q: &[f64], want: Option<Want<'_>>) {
+    fn evaluate(&mut self, at: At<'_>, want: Option<Want<'_>>) {
         for (block, outcome) in self.blocks.iter().zip(&mut self.outcomes) {
-            block.evaluate(q, want, outcome);
+            block.evaluate(at, want, outcome);
         }
+    }
+
+    /// Strain rates of the forces that were evaluated last, at the velocities given there.
+    pub fn strain_rates(&self) -> StrainRates {
+        let mut rates = StrainRates::default();
+        for (block, outcome) in self.blocks.iter().zip(&self.outcomes) {
+            for [square, missed] in &outcome.rates {
+                rates.power += block.damping().viscosity * square;
+                rates.square += square;
+                rates.missed += missed;
+            }
+        }
+        rates
+    }
+
+    /// Mass-proportional damping of each nodal vector, 1/s; none where no material has it.
+    pub fn mass_damping(&self) -> Option<&[f64]> {
+        (!self.mass_damping.is_empty()).then_some(&self.mass_damping)
+    }
+
+    /// Whether any material is damped.
+    pub fn is_damped(&self) -> bool {
+        self.blocks.iter().any(|block| block.damping() != Damping::default())
     }
 
     fn energy(&self) -> StrainEnergy {
@@ -336,6 +386,27 @@ impl System {
     /// The pattern and the values of the tangent that was assembled last, over the free coordinates.
     pub fn tangent(&self) -> (&Pattern, &[f64]) {
         (self.scatter.pattern(), &self.values)
+    }
+
+    /// The tangent that was assembled last, over the free coordinates.
+    pub fn tangent_matrix(&self) -> SymmetricMatrix {
+        SymmetricMatrix::new(Arc::clone(self.scatter.pattern()), self.values.clone())
+    }
+
+    /// The state of the last tangent, for the skew part of the followers: coordinates, and the factor of each load.
+    pub(crate) fn tangent_at(&self) -> &(Vec<f64>, Vec<f64>) {
+        &self.tangent_at
+    }
+
+    /// Factorises a tangent that was assembled earlier.
+    ///
+    /// # Errors
+    ///
+    /// As [`factorize`](Self::factorize).
+    pub(crate) fn restore(&mut self, values: &[f64], at: &(Vec<f64>, Vec<f64>)) -> Result<Inertia, LinearError> {
+        self.values.copy_from_slice(values);
+        self.tangent_at = at.clone();
+        self.factorize()
     }
 
     /// Factorises the tangent that was assembled last.
@@ -389,18 +460,25 @@ impl System {
         self.mass.multiply_add::<3>(x, y);
     }
 
-    /// Kinetic energy (J), momentum (kg m/s) and angular momentum about the origin (kg m2/s).
-    pub fn motion(&self, q: &[f64], v: &[f64]) -> (f64, [f64; 3], [f64; 3]) {
+    /// The nodal vectors that are positions.
+    pub fn positions(&self) -> impl Iterator<Item = usize> {
+        self.model.bodies().iter().flat_map(|body| {
+            let index = body.nodal_vectors().iter().position(|v| *v == NodalVector::R);
+            let index = index.expect("every node has a position");
+            (0..body.grid().nodes()).map(move |node| body.vector(node, index))
+        })
+    }
+
+    /// Kinetic energy (J), momentum (kg m/s) and angular momentum about the origin (kg m2/s), with a mass matrix over
+    /// nodal vectors.
+    pub fn motion(&self, mass: &SymmetricMatrix, q: &[f64], v: &[f64]) -> (f64, [f64; 3], [f64; 3]) {
         let mut momenta = vec![0.0; v.len()];
-        self.add_mass_times(v, &mut momenta);
+        mass.multiply_add::<3>(v, &mut momenta);
         let kinetic = 0.5 * v.iter().zip(&momenta).map(|(v, p)| v * p).sum::<f64>();
-        let mut momentum = Vector3::zeros();
-        let mut angular = Vector3::zeros();
-        for (a, weight) in self.weight.iter().enumerate() {
-            let at = |x: &[f64]| Vector3::from_column_slice(&x[3 * a..3 * a + 3]);
-            momentum += *weight * at(v);
-            angular += at(q).cross(&at(&momenta));
-        }
+        let at = |x: &[f64], a: usize| Vector3::from_column_slice(&x[3 * a..3 * a + 3]);
+        // Gradients do not change in a translation.
+        let momentum: Vector3<f64> = self.positions().map(|a| at(&momenta, a)).sum();
+        let angular: Vector3<f64> = (0..q.len() / 3).map(|a| at(q, a).cross(&at(&momenta, a))).sum();
         (kinetic, momentum.into(), angular.into())
     }
 
@@ -421,6 +499,20 @@ impl System {
         }
         format!("coordinate {coordinate}")
     }
+}
+
+/// The mass-proportional damping of each nodal vector; empty if there is none.
+fn mass_damping(model: &Model, blocks: &[Box<dyn ElementBlock>]) -> Vec<f64> {
+    if blocks.iter().all(|block| block.damping().mass == 0.0) {
+        return Vec::new();
+    }
+    let mut damping = vec![0.0; model.reference().len() / 3];
+    for block in blocks {
+        for vector in (0..block.elements()).flat_map(|element| block.vectors(element)) {
+            damping[*vector as usize] = block.damping().mass;
+        }
+    }
+    damping
 }
 
 /// The scalar mass matrix over all nodal vectors and its row sums in a uniform field.

@@ -1,15 +1,15 @@
 //! Generalised-alpha and, as members of the family, HHT-alpha and Newmark's trapezoidal rule.
 
-use crate::assembly::System;
-use crate::error::InputError;
-use crate::nonlinear::{Failure, Newton, Problem};
+use crate::nonlinear::{Failure, Problem, Velocity};
 use crate::observe::Observer;
 
-use super::Instantaneous;
+use super::equations::Equations;
+use super::method::Integrator;
+use super::state::Instantaneous;
 
 /// The generalised-alpha family. The *forces* at both ends of a step are averaged, not the configurations:
 ///
-/// `M ((1 - alpha_m) a_1 + alpha_m a_0) + (1 - alpha_f) F_1 + alpha_f F_0 = 0`, `F = Q_k - Q_e`,
+/// `M ((1 - alpha_m) a_1 + alpha_m a_0) + (1 - alpha_f) F_1 + alpha_f F_0 = 0`, `F = Q_k + damping - Q_e`,
 ///
 /// with Newmark's formulas for positions and velocities. Second order, unconditionally stable for linear problems.
 ///
@@ -17,7 +17,7 @@ use super::Instantaneous;
 ///
 /// Chung and Hulbert (1993); Hilber, Hughes and Taylor (1977); Newmark (1959).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GeneralizedAlpha {
+pub(super) struct GeneralizedAlpha {
     alpha_m: f64,
     alpha_f: f64,
     beta: f64,
@@ -25,25 +25,14 @@ pub struct GeneralizedAlpha {
 }
 
 impl GeneralizedAlpha {
-    /// Generalised-alpha with the spectral radius `rho_inf` at infinite frequency: 1 keeps the energy of high
-    /// frequencies, 0 removes it within a step.
-    ///
-    /// # Errors
-    ///
-    /// `rho_inf` must be from 0 to 1.
-    pub fn from_spectral_radius(rho_inf: f64) -> Result<Self, InputError> {
-        InputError::check("rho_inf", rho_inf, (0.0..=1.0).contains(&rho_inf), "from 0 to 1")?;
-        Ok(Self::new((2.0 * rho_inf - 1.0) / (rho_inf + 1.0), rho_inf / (rho_inf + 1.0)))
+    /// Generalised-alpha with the spectral radius `rho_inf` at infinite frequency.
+    pub fn from_spectral_radius(rho_inf: f64) -> Self {
+        Self::new((2.0 * rho_inf - 1.0) / (rho_inf + 1.0), rho_inf / (rho_inf + 1.0))
     }
 
-    /// HHT-alpha; `alpha` = 0 is Newmark's trapezoidal rule, -1/3 damps high frequencies most.
-    ///
-    /// # Errors
-    ///
-    /// `alpha` must be from -1/3 to 0.
-    pub fn hht(alpha: f64) -> Result<Self, InputError> {
-        InputError::check("alpha", alpha, (-1.0 / 3.0..=0.0).contains(&alpha), "from -1/3 to 0")?;
-        Ok(Self::new(0.0, -alpha))
+    /// HHT-alpha; `alpha` = 0 is Newmark's trapezoidal rule.
+    pub fn hht(alpha: f64) -> Self {
+        Self::new(0.0, -alpha)
     }
 
     /// The member that is second order and damps as the two averages say.
@@ -51,14 +40,21 @@ impl GeneralizedAlpha {
         let shift = alpha_f - alpha_m;
         Self { alpha_m, alpha_f, beta: 0.25 * (1.0 + shift).powi(2), gamma: 0.5 + shift }
     }
+}
 
-    /// Advances from `now` to `next.t`.
-    pub(super) fn step(
+impl Integrator for GeneralizedAlpha {
+    fn order(&self) -> usize {
+        2
+    }
+
+    /// The accelerations are those of a time `(alpha_f - alpha_m) h` earlier (Chung and Hulbert 1993), so their change
+    /// over a step is the third derivative times `h`. What Newmark's formula misses of it is the error.
+    fn step(
         &self,
-        system: &mut System,
-        newton: &mut Newton,
+        equations: &mut Equations<'_>,
         now: &Instantaneous,
         next: &mut Instantaneous,
+        error: &mut [f64],
         observer: &dyn Observer,
     ) -> Result<(), Failure> {
         let Self { alpha_m, alpha_f, beta, gamma } = *self;
@@ -66,30 +62,52 @@ impl GeneralizedAlpha {
         let n = now.q.len();
 
         // Newmark's position for zero acceleration at the end, and the prediction for an unchanged acceleration.
-        let origin: Vec<f64> = (0..n).map(|i| now.q[i] + h * now.v[i] + h * h * (0.5 - beta) * now.a[i]).collect();
+        let mut origin: Vec<f64> = (0..n).map(|i| now.q[i] + h * now.v[i] + h * h * (0.5 - beta) * now.a[i]).collect();
         let mut constant = vec![0.0; n];
         if alpha_f != 0.0 {
-            system.internal_force(&now.q, &mut constant);
-            for i in 0..n {
-                constant[i] = alpha_f * (constant[i] - now.external[i]);
+            equations.force(now.t, &now.q, &now.v, &mut constant, &mut next.external);
+            for force in &mut constant {
+                *force *= alpha_f;
             }
         }
         if alpha_m != 0.0 {
             let inertia: Vec<f64> = now.a.iter().map(|a| alpha_m * a).collect();
-            system.add_mass_times(&inertia, &mut constant);
+            equations.inertia.add_product(&inertia, &mut constant);
         }
         for i in 0..n {
             next.q[i] = origin[i] + h * h * beta * now.a[i];
         }
-        let mass = (1.0 - alpha_m) / (beta * h * h);
-        let problem = Problem { t: next.t, mass, stiffness: 1.0 - alpha_f, origin: &origin, constant: &constant };
-        let report = newton.solve(system, &problem, &mut next.q, Some(&now.q), observer)?;
+        // Velocities are `rate (q - still)`.
+        let rate = gamma / (beta * h);
+        let mut still: Vec<f64> =
+            (0..n).map(|i| origin[i] - (now.v[i] + h * (1.0 - gamma) * now.a[i]) / rate).collect();
+        next.lag = (alpha_f - alpha_m) * h;
+        equations.prescribe(next);
+        for i in equations.moved() {
+            origin[i] = next.q[i] - beta * h * h * next.a[i];
+            still[i] = next.q[i] - next.v[i] / rate;
+        }
+        let problem = Problem {
+            t: next.t,
+            mass: (1.0 - alpha_m) / (beta * h * h),
+            stiffness: 1.0 - alpha_f,
+            origin: &origin,
+            constant: Some(&constant),
+            velocity: equations.system.is_damped().then_some(Velocity { rate, still: &still }),
+            start: None,
+        };
+        let report = equations.newton.solve(equations.system, &problem, &mut next.q, Some(&now.q), observer)?;
 
+        let missing = h * h * (1.0 / 6.0 - beta + 0.5 * (alpha_f - alpha_m));
         for i in 0..n {
             next.a[i] = (next.q[i] - origin[i]) / (beta * h * h);
             next.v[i] = now.v[i] + h * ((1.0 - gamma) * now.a[i] + gamma * next.a[i]);
+            error[i] = missing * (next.a[i] - now.a[i]);
         }
+        equations.prescribe(next);
         next.negative_pivots = Some(report.negative_pivots);
+        equations.load(next);
+        next.accumulate(now);
         Ok(())
     }
 }

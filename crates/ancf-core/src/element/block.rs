@@ -4,16 +4,52 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::lanes::{Lanes, MAX_LANES, Vector, arch};
+use crate::material::Damping;
 use crate::strain::{self, packed};
 
 use super::classes::Classes;
 use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
 use super::corners::{combine_all, distribute, distribute_all};
-use super::kernel::{Batch, Tangent, Totals};
+use super::kernel::{Batch, Flow, Tangent, Totals};
 use super::tables::{Group, Tables};
 
 /// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
 const TASK: usize = 64;
+
+/// The state at which elements are evaluated.
+#[derive(Clone, Copy, Debug)]
+pub struct At<'a> {
+    /// Nodal coordinates.
+    pub q: &'a [f64],
+    /// Nodal coordinates at the start of a step, if mean forces over the step are wanted: the stress of the mean
+    /// strain, on the directions `B` at the mean coordinates.
+    ///
+    /// # Source
+    ///
+    /// Simo and Tarnow (1994).
+    pub start: Option<&'a [f64]>,
+    /// Velocities, none: elastic forces only.
+    pub motion: Option<Motion<'a>>,
+}
+
+impl<'a> At<'a> {
+    /// At rest.
+    pub fn rest(q: &'a [f64]) -> Self {
+        Self { q, start: None, motion: None }
+    }
+}
+
+/// Velocities, which damping acts on: the viscous stress is `(eta + viscosity) W B v`.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<'a> {
+    /// Velocities `v` of the nodal coordinates.
+    pub velocity: &'a [f64],
+    /// Derivative of the velocities with respect to the nodal coordinates in the time step, 1/s; for mean forces the
+    /// inverse of the step.
+    pub rate: f64,
+    /// Viscosity in addition to the material's `eta`, s.
+    pub viscosity: f64,
+}
 
 /// Which combination of mass and stiffness a tangent is, and how the stiffness is made.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +68,10 @@ pub struct Want<'a> {
 pub struct Outcome {
     /// Membrane and bending energy of each element.
     pub energy: Vec<[f64; 2]>,
-    /// Elastic force on the nodal vectors of each element: `3 N` numbers an element.
+    /// Strain rates of each element as two numbers: `B v . W B v`, which times the viscosity is the power it takes, and
+    /// for mean forces `s . (eps - eps_start - B (q - q_start))`, the energy that they miss. Empty without viscous stress.
+    pub rates: Vec<[f64; 2]>,
+    /// Elastic and viscous force on the nodal vectors of each element: `3 N` numbers an element.
     pub force: Vec<f64>,
     /// Packed symmetric blocks of each element's tangent, column by column, `a <= b`: `9 N (N + 1) / 2` numbers.
     pub tangent: Vec<f64>,
@@ -52,8 +91,10 @@ pub trait ElementBlock: Send + Sync {
     fn weight(&self, element: usize) -> &[f64];
     /// Number of different reference shapes among the elements.
     fn classes(&self) -> usize;
-    /// Evaluates all elements at the nodal coordinates `q`; the tangents if they are wanted.
-    fn evaluate(&self, q: &[f64], want: Option<Want<'_>>, outcome: &mut Outcome);
+    /// Mass-proportional and viscous damping.
+    fn damping(&self) -> Damping;
+    /// Evaluates all elements; the tangents if they are wanted.
+    fn evaluate(&self, at: At<'_>, want: Option<Want<'_>>, outcome: &mut Outcome);
     /// The derivatives of an element's shape functions, `in_x` and `in_y` times, at `(xi, eta)`.
     fn derivative(&self, orders: [usize; 2], point: [f64; 2]) -> Vec<f64>;
 }
@@ -66,6 +107,7 @@ pub(crate) struct Block<const N: usize> {
     classes: Vec<Constants>,
     class_of: Vec<u32>,
     vectors: Vec<[u32; N]>,
+    damping: Damping,
 }
 
 impl<const N: usize> Block<N> {
@@ -78,7 +120,15 @@ impl<const N: usize> Block<N> {
             .collect();
         let classes = classes.finish();
         let couplings = couplings(&tables, &classes);
-        Self { arch: arch(vectors.len()), tables, couplings, classes, class_of, vectors }
+        let damping = section.material.damping();
+        Self { arch: arch(vectors.len()), tables, couplings, classes, class_of, vectors, damping }
+    }
+}
+
+impl<const N: usize> Block<N> {
+    /// Whether strain rates matter.
+    fn flows(&self, at: At<'_>) -> bool {
+        at.motion.is_some_and(|motion| at.start.is_some() || self.damping.viscosity + motion.viscosity != 0.0)
     }
 }
 
@@ -139,24 +189,33 @@ impl<const N: usize> ElementBlock for Block<N> {
         self.tables.derivative(orders, point).to_vec()
     }
 
-    fn evaluate(&self, q: &[f64], want: Option<Want<'_>>, outcome: &mut Outcome) {
+    fn damping(&self) -> Damping {
+        self.damping
+    }
+
+    fn evaluate(&self, at: At<'_>, want: Option<Want<'_>>, outcome: &mut Outcome) {
         let elements = self.elements();
         let tangent_size = if want.is_some() { 9 * N * (N + 1) / 2 } else { 0 };
+        let rates_size = usize::from(self.flows(at));
         outcome.energy.resize(elements, [0.0; 2]);
+        outcome.rates.resize(elements * rates_size, [0.0; 2]);
         outcome.force.resize(elements * 3 * N, 0.0);
         outcome.tangent.resize(elements * tangent_size, 0.0);
-        let task = |first: usize, energy: &mut [[f64; 2]], force: &mut [f64], tangent: &mut [f64]| {
-            self.arch.dispatch(Task { block: self, q, want, first, energy, force, tangent });
-        };
-        if elements <= TASK {
-            task(0, &mut outcome.energy, &mut outcome.force, &mut outcome.tangent);
-        } else if tangent_size == 0 {
-            let parts = outcome.energy.par_chunks_mut(TASK).zip(outcome.force.par_chunks_mut(TASK * 3 * N));
-            parts.enumerate().for_each(|(i, (energy, force))| task(i * TASK, energy, force, &mut []));
+
+        let mut tasks = Vec::with_capacity(elements.div_ceil(TASK));
+        let (mut rates, mut tangent) = (outcome.rates.as_mut_slice(), outcome.tangent.as_mut_slice());
+        let parts = outcome.energy.chunks_mut(TASK).zip(outcome.force.chunks_mut(TASK * 3 * N));
+        for (i, (energy, force)) in parts.enumerate() {
+            let (rates_part, rates_rest) = rates.split_at_mut(energy.len() * rates_size);
+            let (tangent_part, tangent_rest) = tangent.split_at_mut(energy.len() * tangent_size);
+            (rates, tangent) = (rates_rest, tangent_rest);
+            let first = i * TASK;
+            tasks.push(Task { block: self, at, want, first, energy, rates: rates_part, force, tangent: tangent_part });
+        }
+        if let [_] = tasks.as_slice() {
+            tasks.into_iter().for_each(|task| self.arch.dispatch(task));
         } else {
-            let parts = outcome.energy.par_chunks_mut(TASK).zip(outcome.force.par_chunks_mut(TASK * 3 * N));
-            let parts = parts.zip(outcome.tangent.par_chunks_mut(TASK * tangent_size));
-            parts.enumerate().for_each(|(i, ((energy, force), tangent))| task(i * TASK, energy, force, tangent));
+            tasks.into_par_iter().for_each(|task| self.arch.dispatch(task));
         }
     }
 }
@@ -164,10 +223,11 @@ impl<const N: usize> ElementBlock for Block<N> {
 /// Consecutive elements, evaluated with the instruction set that the processor has.
 struct Task<'a, const N: usize> {
     block: &'a Block<N>,
-    q: &'a [f64],
+    at: At<'a>,
     want: Option<Want<'a>>,
     first: usize,
     energy: &'a mut [[f64; 2]],
+    rates: &'a mut [[f64; 2]],
     force: &'a mut [f64],
     tangent: &'a mut [f64],
 }
@@ -177,16 +237,22 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { block, q, want, first, energy, force, tangent } = self;
+        let Self { block, at, want, first, energy, rates, force, tangent } = self;
         let count = energy.len();
         let mut combined = want.map(|_| Tangent::<S, N>::new(simd));
         let (mut constants, mut mass) = (Vec::new(), Vec::new());
+        let Damping { mass: mass_damping, viscosity } = block.damping;
+        let factor = at.motion.map_or(0.0, |motion| viscosity + motion.viscosity);
+        let rate = at.motion.map_or(0.0, |motion| motion.rate);
+        // Shares of the geometric and of the material stiffness.
+        let geometric = if at.start.is_some() { 0.5 } else { 1.0 };
+        let material = geometric + factor * rate;
         let mut constants_of = [u32::MAX; MAX_LANES];
-        for start in (0..count).step_by(S::F64_LANES) {
+        for begin in (0..count).step_by(S::F64_LANES) {
             // Lanes beyond the last element repeat it; what they give is not stored.
             let mut members = [0; MAX_LANES];
             for (lane, member) in members[..S::F64_LANES].iter_mut().enumerate() {
-                *member = first + (start + lane).min(count - 1);
+                *member = first + (begin + lane).min(count - 1);
             }
             let members = &members[..S::F64_LANES];
 
@@ -207,7 +273,10 @@ impl<const N: usize> WithSimd for Task<'_, N> {
                 constants_of = class_of;
             }
 
-            let current = gather(simd, &block.vectors, members, q);
+            let current = gather(simd, &block.vectors, members, at.q);
+            let start = at.start.map(|q| gather(simd, &block.vectors, members, q));
+            let motion = at.motion.filter(|_| block.flows(at));
+            let velocity = motion.map(|motion| gather(simd, &block.vectors, members, motion.velocity));
             let previous = want.and_then(|w| w.previous).map(|p| gather(simd, &block.vectors, members, p));
             let mut totals = Totals::<S, N>::new(simd);
             if let Some(combined) = &mut combined {
@@ -220,32 +289,45 @@ impl<const N: usize> WithSimd for Task<'_, N> {
                 constants: &constants,
                 current: &current,
                 previous: previous.as_ref(),
+                start: start.as_ref(),
+                flow: velocity.as_ref().map(|velocity| Flow { velocity, factor, rate }),
+                geometric: geometric / material,
             };
             batch.evaluate(&mut totals, combined.as_mut());
 
-            let lanes = S::F64_LANES.min(count - start);
+            let lanes = S::F64_LANES.min(count - begin);
             for (i, part) in totals.energy.iter().enumerate() {
                 let values = part.to_array();
                 for lane in 0..lanes {
-                    energy[start + lane][i] = values[lane];
+                    energy[begin + lane][i] = values[lane];
+                }
+            }
+            if !rates.is_empty() {
+                for (i, part) in totals.rates.iter().enumerate() {
+                    let values = part.to_array();
+                    for lane in 0..lanes {
+                        rates[begin + lane][i] = values[lane];
+                    }
                 }
             }
             let forces = distribute_all(&totals.force);
-            store(forces.as_flattened(), 0, 3 * N, &mut force[start * 3 * N..(start + lanes) * 3 * N]);
+            store(forces.as_flattened(), 0, 3 * N, &mut force[begin * 3 * N..(begin + lanes) * 3 * N]);
             if let (Some(want), Some(combined)) = (want, &mut combined) {
                 to_corners(&mut combined.blocks);
                 let size = 9 * N * (N + 1) / 2;
+                let stiffness = want.stiffness * material;
+                let inertia = want.mass + want.stiffness * mass_damping * rate;
                 for (b, column) in combined.blocks.iter_mut().enumerate() {
                     let column = &mut column[..=b];
                     for (a, block) in column.iter_mut().enumerate() {
                         for i in 0..3 {
                             for j in 0..3 {
-                                block[i][j] = block[i][j] * want.stiffness;
+                                block[i][j] = block[i][j] * stiffness;
                             }
-                            block[i][i] = mass[packed(a, b)].scale_add(want.mass, block[i][i]);
+                            block[i][i] = mass[packed(a, b)].scale_add(inertia, block[i][i]);
                         }
                     }
-                    let target = &mut tangent[start * size..(start + lanes) * size];
+                    let target = &mut tangent[begin * size..(begin + lanes) * size];
                     store(column.as_flattened().as_flattened(), 9 * packed(0, b), size, target);
                 }
             }

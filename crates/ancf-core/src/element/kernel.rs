@@ -22,13 +22,46 @@ pub(crate) struct Batch<'a, S: Simd, const N: usize> {
     /// The vectors of the state before the last Newton correction, when the geometric stiffness is to use the stress
     /// extrapolated from there instead of the current one.
     pub previous: Option<&'a [Vector<S>; N]>,
+    /// The vectors at the start of the step, when mean forces over it are wanted.
+    pub start: Option<&'a [Vector<S>; N]>,
+    /// Velocities and viscosity.
+    pub flow: Option<Flow<'a, S, N>>,
+    /// Share of the geometric stiffness in the tangent, relative to that of the material stiffness.
+    pub geometric: f64,
+}
+
+/// Velocities that cause viscous stress.
+#[derive(Clone, Copy)]
+pub(crate) struct Flow<'a, S: Simd, const N: usize> {
+    pub velocity: &'a [Vector<S>; N],
+    /// Viscosity, s.
+    pub factor: f64,
+    /// Derivative of the velocities with respect to the nodal vectors, 1/s.
+    pub rate: f64,
+}
+
+/// What a strain sample is in the state of a batch.
+pub(super) struct Sample<S: Simd, const D: usize, const C: usize> {
+    /// The gradient vectors on which forces act: those of the mean state for mean forces.
+    pub gradients: [Vector<S>; D],
+    /// The strain, or its mean over the step, less the reference.
+    pub strain: [Lanes<S>; C],
+    /// The rate of the strain.
+    pub rate: [Lanes<S>; C],
+    /// The change of the strain over the step less what the rate makes of it.
+    pub missed: [Lanes<S>; C],
+    /// The strain that the last correction would have led to in a linear problem, less the reference, the viscous share
+    /// included.
+    pub extrapolated: Option<[Lanes<S>; C]>,
 }
 
 /// What a batch gives; each part is added to.
 pub(crate) struct Totals<S: Simd, const N: usize> {
     /// Membrane and bending energy; that of a solid counts as the first.
     pub energy: [Lanes<S>; 2],
-    /// Elastic force on each vector.
+    /// Power of a unit viscosity, and the energy that mean forces miss.
+    pub rates: [Lanes<S>; 2],
+    /// Force on each vector.
     pub force: [Vector<S>; N],
 }
 
@@ -54,7 +87,7 @@ impl<S: Simd, const N: usize> Totals<S, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let zero = Lanes::splat(simd, 0.0);
-        Self { energy: [zero; 2], force: [[zero; 3]; N] }
+        Self { energy: [zero; 2], rates: [zero; 2], force: [[zero; 3]; N] }
     }
 }
 
@@ -127,24 +160,25 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
                     }
                 }
 
-                let gradients = patch.gradients::<S, D>(g, self.current);
-                let measure = M::new(law, gradients, area);
-                let strain = difference(measure.strain(), reference);
-                let stress = times(&weight, strain);
+                let with_tangent = tangent.is_some();
+                let sample = self.sample::<M, D, C>(patch, g, law, area, reference, with_tangent);
+                let measure = M::new(law, sample.gradients, area);
+                let mut stress = times(&weight, sample.strain);
                 for c in 0..C {
-                    totals.energy[part] = (stress[c] * 0.5).mul_add(strain[c], totals.energy[part]);
+                    totals.energy[part] = (stress[c] * 0.5).mul_add(sample.strain[c], totals.energy[part]);
+                }
+                if let Some(flow) = self.flow {
+                    let viscous = times(&weight, sample.rate);
+                    totals.add_rates(&stress, &viscous, &sample.rate, &sample.missed);
+                    for c in 0..C {
+                        stress[c] = viscous[c].scale_add(flow.factor, stress[c]);
+                    }
                 }
                 forces[g * D..(g + 1) * D].copy_from_slice(&measure.forces(stress));
 
                 if let Some(tangent) = &mut tangent {
-                    let stress = match self.previous {
-                        Some(previous) => {
-                            let before = patch.gradients::<S, D>(g, previous);
-                            let extrapolated = extrapolated::<S, M, D, C>(law, area, gradients, before);
-                            times(&weight, difference(extrapolated, reference))
-                        }
-                        None => stress,
-                    };
+                    let stress = sample.extrapolated.map_or(stress, |strain| times(&weight, strain));
+                    let stress = stress.map(|s| s * self.geometric);
                     measure.stiffness(&weight, stress, &mut tangent.forms[g * D * D..(g + 1) * D * D]);
                 }
             }
@@ -154,6 +188,70 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
             }
         }
     }
+
+    /// A sample at a point of a patch.
+    #[inline(always)]
+    pub fn sample<M: Measure<S, D, C>, const D: usize, const C: usize>(
+        &self,
+        patch: &Patch<N>,
+        point: usize,
+        law: M::Law,
+        area: Lanes<S>,
+        reference: [Lanes<S>; C],
+        with_tangent: bool,
+    ) -> Sample<S, D, C> {
+        let zero = Lanes::splat(self.simd, 0.0);
+        let mut gradients = patch.gradients::<S, D>(point, self.current);
+        let mut strain = M::new(law, gradients, area).strain();
+        let mut extrapolated = self.previous.filter(|_| with_tangent).map(|previous| {
+            let before = patch.gradients::<S, D>(point, previous);
+            extrapolated::<S, M, D, C>(law, area, gradients, before)
+        });
+        let (mut rate, mut missed) = ([zero; C], [zero; C]);
+        if let Some(start) = self.start {
+            let first = patch.gradients::<S, D>(point, start);
+            for d in 0..D {
+                gradients[d] = mean(gradients[d], first[d]);
+            }
+            let first = M::new(law, first, area).strain();
+            missed = difference(strain, first);
+            strain = mean(strain, first);
+            extrapolated = extrapolated.map(|extrapolated| mean(extrapolated, first));
+        }
+        strain = difference(strain, reference);
+        extrapolated = extrapolated.map(|extrapolated| difference(extrapolated, reference));
+        if let Some(flow) = self.flow {
+            rate = M::new(law, gradients, area).change(&patch.gradients::<S, D>(point, flow.velocity));
+            for c in 0..C {
+                missed[c] = missed[c] - rate[c] * (1.0 / flow.rate);
+                if let Some(extrapolated) = &mut extrapolated {
+                    extrapolated[c] = rate[c].scale_add(flow.factor, extrapolated[c]);
+                }
+            }
+        }
+        Sample { gradients, strain, rate, missed, extrapolated }
+    }
+}
+
+impl<S: Simd, const N: usize> Totals<S, N> {
+    /// Adds what strain rates do: `viscous` is their stress for a unit viscosity, `stress` the elastic one.
+    #[inline(always)]
+    pub fn add_rates(&mut self, stress: &[Lanes<S>], viscous: &[Lanes<S>], rate: &[Lanes<S>], missed: &[Lanes<S>]) {
+        for k in 0..rate.len() {
+            self.rates[0] = viscous[k].mul_add(rate[k], self.rates[0]);
+            self.rates[1] = stress[k].mul_add(missed[k], self.rates[1]);
+        }
+    }
+}
+
+/// `(a + b) / 2`.
+#[inline(always)]
+fn mean<S: Simd, const C: usize>(a: [Lanes<S>; C], b: [Lanes<S>; C]) -> [Lanes<S>; C] {
+    let mut mean = a;
+    for c in 0..C {
+        mean[c] = (a[c] + b[c]) * 0.5;
+    }
+    mean
 }
 
 /// Number of constants of a point: the reference area stretch, the reference strain and the weight.
@@ -167,7 +265,7 @@ pub(crate) const fn point_constants(components: usize) -> usize {
 ///
 /// Magisano, Leonetti and Garcea (2017): mixed-integration-point Newton.
 #[inline(always)]
-pub(super) fn extrapolated<S: Simd, M: Measure<S, D, C>, const D: usize, const C: usize>(
+fn extrapolated<S: Simd, M: Measure<S, D, C>, const D: usize, const C: usize>(
     law: M::Law,
     area: Lanes<S>,
     gradients: [Vector<S>; D],

@@ -19,7 +19,7 @@ mod projection;
 mod tables;
 mod thin;
 
-pub use block::{ElementBlock, Outcome, Want};
+pub use block::{At, ElementBlock, Motion, Outcome, Want};
 pub(crate) use constants::Section;
 pub(crate) use kind::Variant;
 pub use kind::{Kind, NodalVector};

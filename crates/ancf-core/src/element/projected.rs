@@ -6,7 +6,7 @@ use crate::lanes::{Lanes, Vector, axpy};
 use crate::strain::{Measure, Metric, packed};
 
 use super::constants::Couplings;
-use super::kernel::{AT_ONCE, Batch, Tangent, Totals, combination, difference, extrapolated};
+use super::kernel::{AT_ONCE, Batch, Tangent, Totals, combination};
 use super::projection::{MODES, POINTS, Projection, Row};
 use super::tables::Samples;
 
@@ -31,16 +31,29 @@ pub(super) fn add<S: Simd, const N: usize>(
     let reference = |g: usize| [references[g * C], references[g * C + 1], references[g * C + 2]];
 
     let mut vectors = [[zero; 3]; 2 * POINTS];
-    let mut strain = [[zero; C]; POINTS];
+    let [mut strain, mut rate, mut missed, mut extrapolated] = [[[zero; C]; POINTS]; 4];
+    let with_tangent = tangent.is_some();
     for g in 0..POINTS {
-        let [x, y] = samples.patches[g / PATCH].gradients(g % PATCH, batch.current);
-        (vectors[2 * g], vectors[2 * g + 1]) = (x, y);
-        strain[g] = difference(Metric::new((), [x, y], zero).strain(), reference(g));
+        let patch = &samples.patches[g / PATCH];
+        let sample = batch.sample::<Metric<S>, 2, C>(patch, g % PATCH, (), zero, reference(g), with_tangent);
+        [vectors[2 * g], vectors[2 * g + 1]] = sample.gradients;
+        (strain[g], rate[g], missed[g]) = (sample.strain, sample.rate, sample.missed);
+        extrapolated[g] = sample.extrapolated.unwrap_or(strain[g]);
     }
-    let amplitudes = amplitudes(zero, projection, &strain);
-    let mut stress = conjugates(zero, batch.couplings, weights, &amplitudes);
+    let amplitudes = |strain: &[[Lanes<S>; C]; POINTS]| self::amplitudes(zero, projection, strain);
+    let conjugates = |amplitudes: &[Lanes<S>; MODES]| conjugates(zero, batch.couplings, weights, amplitudes);
+    let strain = amplitudes(&strain);
+    let mut stress = conjugates(&strain);
     for k in 0..MODES {
-        totals.energy[0] = (stress[k] * 0.5).mul_add(amplitudes[k], totals.energy[0]);
+        totals.energy[0] = (stress[k] * 0.5).mul_add(strain[k], totals.energy[0]);
+    }
+    if let Some(flow) = batch.flow {
+        let rate = amplitudes(&rate);
+        let viscous = conjugates(&rate);
+        totals.add_rates(&stress, &viscous, &rate, &amplitudes(&missed));
+        for k in 0..MODES {
+            stress[k] = viscous[k].scale_add(flow.factor, stress[k]);
+        }
     }
 
     let mut at_points = [[zero; C]; POINTS];
@@ -59,15 +72,10 @@ pub(super) fn add<S: Simd, const N: usize>(
     }
 
     if let Some(tangent) = tangent {
-        if let Some(previous) = batch.previous {
-            for g in 0..POINTS {
-                let now = [vectors[2 * g], vectors[2 * g + 1]];
-                let before = samples.patches[g / PATCH].gradients(g % PATCH, previous);
-                let value = extrapolated::<S, Metric<S>, 2, C>((), zero, now, before);
-                strain[g] = difference(value, reference(g));
-            }
-            stress = conjugates(zero, batch.couplings, weights, &self::amplitudes(zero, projection, &strain));
+        if batch.previous.is_some() {
+            stress = conjugates(&amplitudes(&extrapolated));
         }
+        let stress = stress.map(|s| s * batch.geometric);
         add_tangent(zero, projection, batch.couplings, weights, &vectors, &stress, tangent);
     }
 }

@@ -76,12 +76,42 @@ pub enum Failure {
         /// The body.
         body: String,
     },
+    /// Forces or states of an explicit step are not finite.
+    #[error("the state became infinite or not a number in the step to t = {t:.6e} s")]
+    Overflow {
+        /// End of the step, s.
+        t: f64,
+    },
+    /// A fixed explicit step is not stable.
+    #[error("the step {step:.4e} s is above the limit {limit:.4e} s of the explicit method at t = {t:.4e} s")]
+    StepAboveLimit {
+        /// Time, s.
+        t: f64,
+        /// The step, s.
+        step: f64,
+        /// The longest stable step in this state, s.
+        limit: f64,
+    },
+    /// Error control asks for a step that is too short.
+    #[error("the tolerance needs steps below {step:.1e} s at t = {t:.6e} s{}", of_cause(.cause.as_deref()))]
+    StepTooSmall {
+        /// Time, s.
+        t: f64,
+        /// The step that was asked for, s.
+        step: f64,
+        /// Why the last longer step could not be made, unless its error was too large.
+        cause: Option<Box<Failure>>,
+    },
     /// The memory does not suffice.
     #[error("the equations do not fit in the memory")]
     TooLarge,
     /// The observer asked to stop.
     #[error("stopped on request")]
     Stopped,
+}
+
+fn of_cause(cause: Option<&Failure>) -> String {
+    cause.map_or_else(String::new, |cause| format!(": {cause}"))
 }
 
 impl Failure {
@@ -103,6 +133,17 @@ impl Failure {
                 "the structure buckles or snaps here: a dynamic run with damping follows it; a small disturbing load shows the branch it takes"
             }
             Self::Massless { .. } => "a positive density, or kind = \"static\"",
+            Self::Overflow { .. } => "a smaller step, or an implicit method with error control (rtol)",
+            Self::StepAboveLimit { .. } => {
+                "a step below the limit, error control (rtol), or an implicit method; force = true to see what happens"
+            }
+            Self::StepTooSmall { cause: None, .. } => {
+                "a larger rtol; if the motion is violent there, check loads, thickness and units"
+            }
+            Self::StepTooSmall { .. } => {
+                "an element may have collapsed or a load may be too large to be carried: check loads, thickness and \
+                 units, refine the mesh where it bends most, add damping"
+            }
             Self::TooLarge => "a coarser mesh",
             Self::Stopped => "run it again to go on",
         }

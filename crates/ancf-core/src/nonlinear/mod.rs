@@ -5,19 +5,42 @@ mod failure;
 mod newton;
 
 pub use failure::Failure;
+pub(crate) use newton::Kept;
 pub use newton::{Newton, Options, Report, Variant};
 
 /// The coefficients of the problem.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Problem<'a> {
     /// Time, or the load factor in statics.
     pub t: f64,
     /// Factor `c` of the inertia force.
     pub mass: f64,
-    /// Factor `k` of the elastic force and the loads.
+    /// Factor `k` of the elastic force, the damping and the loads.
     pub stiffness: f64,
-    /// Coordinates `q*` at which the inertia force vanishes.
+    /// Coordinates `q*` at which the inertia force vanishes; of no matter without inertia.
     pub origin: &'a [f64],
-    /// Constant force `p`.
-    pub constant: &'a [f64],
+    /// Constant force `p`, none: zero.
+    pub constant: Option<&'a [f64]>,
+    /// The velocities that damping acts on, none: without damping.
+    pub velocity: Option<Velocity<'a>>,
+    /// Coordinates at the start of a step, if forces are to be means over it that neither gain nor lose energy.
+    ///
+    /// The mean force is `B^T W (mean(eps) - eps_0)` with `B` at the mean coordinates; for strains that are quadratic
+    /// in the coordinates its work is the change of energy. For the others a viscous stress is added whose coefficient,
+    /// one for the whole model and of either sign, makes up the difference. It leaves momenta alone, as every stress
+    /// does. The discrete gradient is so taken in the strains, in the norm of `W`, and not in the coordinates.
+    ///
+    /// # Source
+    ///
+    /// Simo and Tarnow (1994); Gonzalez (1996), discrete gradients; Laursen and Meng (2001), the correction of the stress.
+    pub start: Option<&'a [f64]>,
+}
+
+/// Velocities as a function of the coordinates: `v = rate (q - still)`.
+#[derive(Clone, Copy, Debug)]
+pub struct Velocity<'a> {
+    /// Derivative of the velocities, 1/s.
+    pub rate: f64,
+    /// Coordinates at which the velocities vanish.
+    pub still: &'a [f64],
 }

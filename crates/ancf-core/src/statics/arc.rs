@@ -106,9 +106,8 @@ fn advance(
     let from = &path.at;
     let mut q: Vec<f64> = from.q.iter().zip(&tangent.q).map(|(q, p)| q + length * p).collect();
     let predicted = q.clone();
-    let zeros = vec![0.0; q.len()];
     let t = from.load.t + length * tangent.t;
-    let mut problem = Problem { t, mass: 0.0, stiffness: 1.0, origin: &zeros, constant: &zeros };
+    let mut problem = Problem { t, stiffness: 1.0, ..Problem::default() };
     let normal: Vec<f64> = tangent.q.iter().zip(&metric.weights).map(|(p, w)| w * p).collect();
     let mut report = path.newton.solve_in_plane(path.system, &problem, &normal, &mut q, Some(&from.q), observer)?;
     let iterations = report.iterations;

@@ -112,9 +112,8 @@ fn advance(
 ) -> Result<usize, Failure> {
     let from = &path.at;
     let mut q: Vec<f64> = from.q.iter().zip(predicted).map(|(q, p)| q + p).collect();
-    let zeros = vec![0.0; q.len()];
     let held: Vec<f64> = path.initial.iter().map(|f| to.held * f).collect();
-    let problem = Problem { t: to.t, mass: 0.0, stiffness: 1.0, origin: &zeros, constant: &held };
+    let problem = Problem { t: to.t, stiffness: 1.0, constant: Some(&held), ..Problem::default() };
     let report = path.newton.solve(path.system, &problem, &mut q, Some(&from.q), observer)?;
     let negative = report.negative_pivots;
     if negative > 0 {
@@ -122,7 +121,7 @@ fn advance(
     }
 
     let end_change = path.change(&q, to);
-    let mut slope = zeros;
+    let mut slope = vec![0.0; q.len()];
     path.system.solve(&end_change, &mut slope);
     let work = |load: Load| {
         let released: f64 = (0..q.len()).map(|i| -load.held * path.initial[i] * (q[i] - from.q[i])).sum();

@@ -106,7 +106,7 @@ impl<'a> Path<'a> {
     /// What the path has taken.
     pub fn counts(&self) -> Counts {
         let (steps, rejected, iterations) = (self.steps, self.rejected, self.newton.iterations());
-        Counts { steps, rejected, iterations, ..Counts::default() }
+        Counts { steps, rejected, unsolved: rejected, iterations, ..Counts::default() }
     }
 
     /// Gives the last point to the observer.
@@ -122,6 +122,7 @@ impl<'a> Path<'a> {
             strain,
             kinetic: 0.0,
             work: self.work,
+            dissipated: 0.0,
             momentum: [0.0; 3],
             angular_momentum: [0.0; 3],
             negative_pivots: Some(negative_pivots),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ancf_core::Material;
 use ancf_core::assembly::System;
-use ancf_core::dynamics::{self, GeneralizedAlpha};
+use ancf_core::dynamics::{self, Method, Steps};
 use ancf_core::element::{Kind, Membrane, NodalVector, Want};
 use ancf_core::mesh::Surface;
 use ancf_core::model::{BodyId, Fix, History, Load, LoadKind, Model, Plate};
@@ -70,14 +70,14 @@ pub fn pendulum(divisions: [usize; 2], membrane: Membrane) -> System {
 }
 
 /// A motion with fixed steps, started at rest.
-pub fn motion(method: GeneralizedAlpha, until: f64, step: f64, outputs: Vec<f64>) -> dynamics::Options {
-    dynamics::Options { until, step, method, outputs, velocity: None, newton: Default::default() }
+pub fn motion(method: Method, until: f64, step: f64, outputs: Vec<f64>) -> dynamics::Options {
+    dynamics::Options { until, steps: Steps::fixed(step), method, outputs, velocity: None, newton: Default::default() }
 }
 
 /// The states of a motion that must reach its end.
 pub fn simulate(system: &mut System, options: &dynamics::Options) -> Vec<State> {
     let mut states = Vec::new();
-    let run = dynamics::simulate(system, options, &mut states).unwrap();
+    let run = dynamics::simulate(system, options, None, &mut states).unwrap();
     assert_eq!(run.outcome, Outcome::Ok, "at t = {}", run.reached);
     states
 }

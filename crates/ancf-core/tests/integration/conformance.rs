@@ -241,7 +241,7 @@ fn mass_and_its_moments_are_exact() {
             let position = Vector3::new(part([1, 0]), part([0, 1]), 0.0);
             (part([0, 0]) * translation + spin.cross(&position)).into()
         });
-        let (kinetic, momentum, angular) = system.motion(system.model().reference(), &v);
+        let (kinetic, momentum, angular) = system.motion(system.mass(), system.model().reference(), &v);
         let expected = mass * (translation + spin.cross(&centre));
         assert!((Vector3::from(momentum) - expected).amax() < 1e-14 * mass, "{name}: {momentum:?}");
         let expected_angular = mass * centre.cross(&translation) + inertia * spin;

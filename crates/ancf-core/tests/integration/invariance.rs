@@ -4,7 +4,7 @@
 //! Goal: equality to the tolerance of the solver.
 //! Mesh: 4 x 3 elements.
 
-use ancf_core::dynamics::GeneralizedAlpha;
+use ancf_core::dynamics::Method;
 use ancf_core::element::Membrane;
 use ancf_core::model::{LoadKind, Model};
 use ancf_core::observe::State;
@@ -90,7 +90,7 @@ fn motions_do_not_depend_on_units() {
         let model = scene(units, 1e6, 0.01);
         let [until, step] = [0.1, 0.002].map(|t| units.of(t, [0, 0, 1]));
         let mut system = system(model.clone());
-        let end = simulate(&mut system, &motion(GeneralizedAlpha::hht(-0.05).unwrap(), until, step, vec![0.0, until]));
+        let end = simulate(&mut system, &motion(Method::Hht { alpha: -0.05 }, until, step, vec![0.0, until]));
         [0, 1].map(|i| positions(&model, &end[i], units))
     };
     let [rest, expected] = solution(SI);

@@ -4,7 +4,7 @@
 //! Goal: equal bits of all states, not equality to rounding.
 //! Mesh: 16 x 16 elements: four tasks for the elements, five for the columns of the tangent.
 
-use ancf_core::dynamics::GeneralizedAlpha;
+use ancf_core::dynamics::Method;
 use ancf_core::element::Membrane;
 use ancf_core::model::LoadKind;
 use ancf_core::observe::State;
@@ -53,6 +53,6 @@ fn motions_have_the_same_bits() {
         let mut model = pendulum([16, 16], Membrane::Full).model().clone();
         let body = model.find("plate").unwrap();
         add_constant(&mut model, LoadKind::Pressure { body, pressure: 5.0 });
-        simulate(&mut system(model), &motion(GeneralizedAlpha::hht(-0.05).unwrap(), 4e-3, 1e-3, vec![1e-3, 4e-3]))
+        simulate(&mut system(model), &motion(Method::Hht { alpha: -0.05 }, 4e-3, 1e-3, vec![1e-3, 4e-3]))
     });
 }

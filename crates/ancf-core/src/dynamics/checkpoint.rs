@@ -1,0 +1,235 @@
+//! What is needed to continue a motion to the same bits.
+
+use crate::assembly::{StrainEnergy, System};
+use crate::error::InputError;
+use crate::nonlinear::{Failure, Kept};
+use crate::observe::State;
+use crate::report::Counts;
+
+use super::Options;
+use super::control::Controller;
+use super::equations::Equations;
+use super::state::Instantaneous;
+
+/// A motion at the end of an accepted step, from which [`simulate`](super::simulate) goes on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    pub(super) method: String,
+    pub(super) now: Instantaneous,
+    pub(super) controller: Controller,
+    pub(super) tangent: Option<Tangent>,
+    pub(super) counts: Counts,
+}
+
+/// A tangent whose factorisation is kept for the next step.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tangent {
+    kept: Kept,
+    values: Vec<f64>,
+    at: (Vec<f64>, Vec<f64>),
+}
+
+impl Tangent {
+    /// The tangent that Newton's method keeps, if it does.
+    pub fn of(equations: &Equations<'_>) -> Option<Self> {
+        let system = &equations.system;
+        let kept = equations.newton.kept()?;
+        Some(Self { kept, values: system.tangent().1.to_vec(), at: system.tangent_at().clone() })
+    }
+
+    /// Factorises it again.
+    pub fn restore(&self, equations: &mut Equations<'_>) -> Result<(), Failure> {
+        let Equations { system, newton, .. } = equations;
+        system.restore(&self.values, &self.at).map_err(|e| Failure::from_linear(e, 0, |row| system.describe(row)))?;
+        newton.keep(Some(self.kept));
+        Ok(())
+    }
+}
+
+/// What a file of a checkpoint begins with.
+const MAGIC: &[u8; 8] = b"ancf-cp1";
+
+impl Checkpoint {
+    /// The time that was reached, s.
+    pub fn t(&self) -> f64 {
+        self.now.t
+    }
+
+    /// Checks that a run can go on from here.
+    pub(super) fn validate(&self, system: &System, options: &Options) -> Result<(), InputError> {
+        let n = system.coordinates();
+        let sizes = [&self.now.q, &self.now.v, &self.now.a, &self.now.external].map(Vec::len);
+        let given = format!("that of {} nodal coordinates", sizes[0]);
+        InputError::check("checkpoint", given, sizes == [n; 4], &format!("that of a run with {n} nodal coordinates"))?;
+        let entries = system.tangent().1.len();
+        let fits = self.tangent.as_ref().is_none_or(|tangent| tangent.values.len() == entries);
+        InputError::check("checkpoint", "that of another mesh or support", fits, "that of a run of this model")?;
+        let method = options.method.name();
+        let given = format!("that of method \"{}\"", self.method);
+        InputError::check("checkpoint", given, self.method == method, &format!("that of method \"{method}\""))
+    }
+
+    /// The checkpoint, and the outputs so far, as bytes for a file; numbers in 8 bytes, lowest first.
+    pub fn to_bytes(&self, states: &[State]) -> Vec<u8> {
+        let mut words = Words(MAGIC.to_vec());
+        self.write(&mut words);
+        words.count(states.len());
+        for state in states {
+            words.state(state);
+        }
+        words.0
+    }
+
+    fn write(&self, words: &mut Words) {
+        let Self { method, now, controller, tangent, counts } = self;
+        words.count(method.len());
+        words.0.extend(method.as_bytes());
+        for x in [now.t, now.lag, now.damping, now.work, now.dissipated] {
+            words.number(x);
+        }
+        for numbers in [&now.q, &now.v, &now.a, &now.external] {
+            words.numbers(numbers);
+        }
+        words.count(now.negative_pivots.map_or(0, |n| n + 1));
+        words.number(controller.step);
+        words.number(controller.last_error);
+        words.count(usize::from(controller.rejected));
+        for count in [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.factorizations] {
+            words.count(count);
+        }
+        words.count(usize::from(tangent.is_some()));
+        if let Some(Tangent { kept, values, at }) = tangent {
+            words.numbers(&kept.coefficients);
+            words.count(kept.negative);
+            words.numbers(values);
+            words.numbers(&at.0);
+            words.numbers(&at.1);
+        }
+    }
+
+    /// A checkpoint and the outputs before it from their bytes.
+    ///
+    /// # Errors
+    ///
+    /// They must be those of a whole checkpoint.
+    pub fn from_bytes(bytes: &[u8]) -> Result<(Self, Vec<State>), InputError> {
+        let broken = || InputError::new("checkpoint", format!("{} bytes", bytes.len()), "a whole checkpoint file");
+        let read = |bytes| {
+            let mut words = Reader(bytes);
+            let checkpoint = Self::read(&mut words)?;
+            let states = (0..words.count()?).map(|_| words.state()).collect::<Option<_>>()?;
+            words.0.is_empty().then_some((checkpoint, states))
+        };
+        bytes.strip_prefix(MAGIC).and_then(read).ok_or_else(broken)
+    }
+
+    fn read(words: &mut Reader<'_>) -> Option<Self> {
+        let length = words.count()?;
+        let method = String::from_utf8(words.take(length)?.to_vec()).ok()?;
+        let [t, lag, damping, work, dissipated] = words.array()?;
+        let (q, v, a, external) = (words.numbers()?, words.numbers()?, words.numbers()?, words.numbers()?);
+        let negative_pivots = words.count()?.checked_sub(1);
+        let now = Instantaneous { t, q, v, a, lag, external, damping, work, dissipated, negative_pivots };
+        let [step, last_error] = words.array()?;
+        let controller = Controller { step, last_error, rejected: words.count()? != 0 };
+        let counts = Counts {
+            steps: words.count()?,
+            rejected: words.count()?,
+            unsolved: words.count()?,
+            iterations: words.count()?,
+            factorizations: words.count()?,
+            ..Counts::default()
+        };
+        let mut tangent = None;
+        if words.count()? != 0 {
+            let coefficients = words.numbers()?.try_into().ok()?;
+            let kept = Kept { coefficients, negative: words.count()? };
+            let values = words.numbers()?;
+            tangent = Some(Tangent { kept, values, at: (words.numbers()?, words.numbers()?) });
+        }
+        Some(Self { method, now, controller, tangent, counts })
+    }
+}
+
+/// Bytes that are written.
+struct Words(Vec<u8>);
+
+impl Words {
+    fn count(&mut self, count: usize) {
+        self.0.extend((count as u64).to_le_bytes());
+    }
+
+    fn number(&mut self, x: f64) {
+        self.0.extend(x.to_le_bytes());
+    }
+
+    fn numbers(&mut self, numbers: &[f64]) {
+        self.count(numbers.len());
+        self.0.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+    }
+
+    fn state(&mut self, state: &State) {
+        let State { t, q, v, a, strain, kinetic, work, dissipated, momentum, angular_momentum, negative_pivots } =
+            state;
+        for x in [*t, strain.membrane, strain.bending, *kinetic, *work, *dissipated] {
+            self.number(x);
+        }
+        for x in momentum.iter().chain(angular_momentum) {
+            self.number(*x);
+        }
+        for numbers in [q, v, a] {
+            self.numbers(numbers);
+        }
+        self.count(negative_pivots.map_or(0, |n| n + 1));
+    }
+}
+
+/// Bytes that are still to be read.
+struct Reader<'a>(&'a [u8]);
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, length: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.0.split_at_checked(length)?;
+        self.0 = rest;
+        Some(taken)
+    }
+
+    fn count(&mut self) -> Option<usize> {
+        u64::from_le_bytes(self.take(8)?.try_into().ok()?).try_into().ok()
+    }
+
+    fn number(&mut self) -> Option<f64> {
+        Some(f64::from_le_bytes(self.take(8)?.try_into().ok()?))
+    }
+
+    fn array<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let mut numbers = [0.0; N];
+        for number in &mut numbers {
+            *number = self.number()?;
+        }
+        Some(numbers)
+    }
+
+    fn state(&mut self) -> Option<State> {
+        let [t, membrane, bending, kinetic, work, dissipated] = self.array()?;
+        Some(State {
+            t,
+            strain: StrainEnergy { membrane, bending },
+            kinetic,
+            work,
+            dissipated,
+            momentum: self.array()?,
+            angular_momentum: self.array()?,
+            q: self.numbers()?,
+            v: self.numbers()?,
+            a: self.numbers()?,
+            negative_pivots: self.count()?.checked_sub(1),
+        })
+    }
+
+    fn numbers(&mut self) -> Option<Vec<f64>> {
+        let count = self.count()?;
+        let bytes = self.take(count.checked_mul(8)?)?;
+        Some(bytes.as_chunks().0.iter().map(|word| f64::from_le_bytes(*word)).collect())
+    }
+}

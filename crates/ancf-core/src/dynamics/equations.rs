@@ -1,0 +1,109 @@
+//! The equations of motion at one time, for every integrator.
+
+use crate::assembly::System;
+use crate::element::{At, Motion};
+use crate::nonlinear::{Failure, Newton};
+
+use super::inertia::Inertia;
+use super::state::Instantaneous;
+
+/// `M a + F(t, q, v) = 0` with `F = Q_k + damping - Q_e`, and the solvers for it.
+pub(super) struct Equations<'a> {
+    pub system: &'a mut System,
+    pub newton: Newton,
+    pub inertia: Inertia,
+    work: Vec<f64>,
+}
+
+impl<'a> Equations<'a> {
+    pub fn new(system: &'a mut System, newton: Newton, inertia: Inertia) -> Self {
+        let work = vec![0.0; system.coordinates()];
+        Self { system, newton, inertia, work }
+    }
+
+    /// The force `F`, the loads `Q_e` in it, and the power that damping takes.
+    pub fn force(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64], loads: &mut [f64]) -> f64 {
+        let motion = self.system.is_damped().then_some(Motion { velocity: v, rate: 0.0, viscosity: 0.0 });
+        self.system.force(At { q, start: None, motion }, force);
+        let mut power = if motion.is_some() { self.system.strain_rates().power } else { 0.0 };
+        if let Some(damping) = self.system.mass_damping() {
+            for (i, product) in self.work.iter_mut().enumerate() {
+                *product = damping[i / 3] * v[i];
+            }
+            let mut drag = vec![0.0; q.len()];
+            self.inertia.add_product(&self.work, &mut drag);
+            for (i, drag) in drag.iter().enumerate() {
+                power += v[i] * drag;
+                force[i] += drag;
+            }
+        }
+        self.system.external_force(q, t, loads);
+        for (force, load) in force.iter_mut().zip(loads) {
+            *force -= *load;
+        }
+        power
+    }
+
+    /// Sets positions, velocities and accelerations of moved supports.
+    pub fn prescribe(&self, at: &mut Instantaneous) {
+        let model = self.system.model();
+        for moved in model.moved() {
+            let i = moved.coordinate;
+            [at.q[i], at.v[i], _] = model.prescribed(moved, at.t);
+            [_, _, at.a[i]] = model.prescribed(moved, at.t - at.lag);
+        }
+    }
+
+    /// Coordinates whose motion is prescribed.
+    pub fn moved(&self) -> impl Iterator<Item = usize> {
+        self.system.model().moved().iter().map(|moved| moved.coordinate)
+    }
+
+    /// The accelerations of a state whose positions and velocities are known, its loads and the power of damping.
+    ///
+    /// # Errors
+    ///
+    /// The forces must be finite.
+    pub fn accelerate(&mut self, at: &mut Instantaneous) -> Result<(), Failure> {
+        let mut force = vec![0.0; at.q.len()];
+        at.damping = self.force(at.t, &at.q, &at.v, &mut force, &mut at.external);
+        if !force.iter().all(|f| f.is_finite()) {
+            return Err(Failure::Overflow { t: at.t });
+        }
+        let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
+        self.prescribe(at);
+        if self.moved().next().is_some() {
+            // Free coordinates see the inertia of moved ones as a force.
+            let mut moved = vec![0.0; right.len()];
+            for i in self.moved() {
+                moved[i] = -at.a[i];
+            }
+            self.inertia.add_product(&moved, &mut right);
+        }
+        self.inertia.solve(&right, &mut at.a);
+        self.add_reactions(&force, at);
+        Ok(())
+    }
+
+    /// Loads and the power of damping of a state whose accelerations are known.
+    pub fn load(&mut self, at: &mut Instantaneous) {
+        if self.system.is_damped() || self.moved().next().is_some() {
+            let mut force = vec![0.0; at.q.len()];
+            at.damping = self.force(at.t, &at.q, &at.v, &mut force, &mut at.external);
+            self.add_reactions(&force, at);
+        } else {
+            self.system.external_force(&at.q, at.t, &mut at.external);
+        }
+    }
+
+    /// Adds the forces of moved supports to the external ones.
+    fn add_reactions(&mut self, force: &[f64], at: &mut Instantaneous) {
+        if self.moved().next().is_some() {
+            let mut reaction = force.to_vec();
+            self.inertia.add_product(&at.a, &mut reaction);
+            for i in self.moved() {
+                at.external[i] += reaction[i];
+            }
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The mass matrix, factorised at a third of its size: components of vectors do not mix.
+
+use std::sync::Arc;
+
+use crate::assembly::System;
+use crate::linear::{Factorization, LinearError, Pattern, SymmetricMatrix};
+use crate::nonlinear::Failure;
+
+/// The scalar mass matrix over nodal vectors and its factors.
+pub(super) struct Inertia {
+    matrix: SymmetricMatrix,
+    parts: Vec<Part>,
+    positions: Vec<usize>,
+}
+
+/// Components whose free nodal vectors are the same.
+struct Part {
+    components: Vec<usize>,
+    vectors: Vec<usize>,
+    factorization: Factorization,
+    right: Vec<f64>,
+}
+
+impl Inertia {
+    /// The consistent mass matrix, or the lumped one: its diagonal, scaled so that each body keeps its mass.
+    ///
+    /// # Source
+    ///
+    /// Dufva and Shabana (2005), (37), (38); Hinton, Rock and Zienkiewicz (1976) for the lumping.
+    pub fn new(system: &System, lumped: bool) -> Result<Self, Failure> {
+        if let Some(body) = system.model().bodies().iter().find(|body| body.plate().material.density() == 0.0) {
+            return Err(Failure::Massless { body: body.name().to_owned() });
+        }
+        let matrix = if lumped { lump(system) } else { system.mass().clone() };
+        let mut parts: Vec<Part> = Vec::new();
+        for component in 0..3 {
+            let of_component = system.free().iter().filter(|coordinate| *coordinate % 3 == component);
+            let vectors: Vec<usize> = of_component.map(|coordinate| coordinate / 3).collect();
+            if let Some(part) = parts.iter_mut().find(|part| part.vectors == vectors) {
+                part.components.push(component);
+            } else {
+                let factorization = factorize(&matrix, &vectors)
+                    .map_err(|e| Failure::from_linear(e, 0, |row| format!("nodal vector {}", vectors[row])))?;
+                parts.push(Part { components: vec![component], vectors, factorization, right: Vec::new() });
+            }
+        }
+        Ok(Self { matrix, parts, positions: system.positions().collect() })
+    }
+
+    /// The nodal vectors that are positions.
+    pub fn positions(&self) -> &[usize] {
+        &self.positions
+    }
+
+    /// The matrix, over nodal vectors.
+    pub fn matrix(&self) -> &SymmetricMatrix {
+        &self.matrix
+    }
+
+    /// Adds `M x` to `y`.
+    pub fn add_product(&self, x: &[f64], y: &mut [f64]) {
+        self.matrix.multiply_add::<3>(x, y);
+    }
+
+    /// Solves `M x = right` for the free coordinates; leaves the others of `x` as they are.
+    pub fn solve(&mut self, right: &[f64], x: &mut [f64]) {
+        for part in &mut self.parts {
+            let Part { components, vectors, factorization, right: packed } = part;
+            packed.clear();
+            packed.extend(vectors.iter().flat_map(|v| components.iter().map(move |c| right[3 * v + c])));
+            factorization.solve_many(packed, components.len());
+            let places = vectors.iter().flat_map(|v| components.iter().map(move |c| 3 * v + c));
+            for (place, value) in places.zip(packed) {
+                x[place] = *value;
+            }
+        }
+    }
+}
+
+/// The diagonal of the mass matrix, scaled body by body to its mass.
+fn lump(system: &System) -> SymmetricMatrix {
+    let mass = system.mass();
+    let n = mass.pattern().n();
+    let diagonal: Vec<f64> = (0..n).map(|a| mass.values()[mass.pattern().col_ptr()[a]]).collect();
+    let positions: Vec<usize> = system.positions().collect();
+    let mut values = diagonal.clone();
+    for body in system.model().bodies() {
+        let vectors = body.vector(0, 0)..body.vector(body.grid().nodes(), 0);
+        let own = || positions.iter().filter(|a| vectors.contains(a));
+        let scale = own().map(|a| system.weight()[*a]).sum::<f64>() / own().map(|a| diagonal[*a]).sum::<f64>();
+        for value in &mut values[vectors.clone()] {
+            *value *= scale;
+        }
+    }
+    let pattern = Pattern::from_groups::<[usize; 0]>(n, &[]).expect("a diagonal");
+    SymmetricMatrix::new(Arc::new(pattern), values)
+}
+
+/// Factorises the part of a matrix with these rows and columns, in their order.
+fn factorize(matrix: &SymmetricMatrix, vectors: &[usize]) -> Result<Factorization, LinearError> {
+    let mut number = vec![usize::MAX; matrix.pattern().n()];
+    for (i, &vector) in vectors.iter().enumerate() {
+        number[vector] = i;
+    }
+    let mut columns = vec![Vec::new(); vectors.len()];
+    for &column in vectors {
+        for (k, &row) in matrix.pattern().rows(column).iter().enumerate() {
+            if number[row] != usize::MAX {
+                let (i, j) = (number[row].max(number[column]), number[row].min(number[column]));
+                columns[j].push((i, matrix.values()[matrix.pattern().col_ptr()[column] + k]));
+            }
+        }
+    }
+    let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
+    for column in &mut columns {
+        column.sort_unstable_by_key(|entry| entry.0);
+        row_idx.extend(column.iter().map(|entry| entry.0));
+        values.extend(column.iter().map(|entry| entry.1));
+        col_ptr.push(row_idx.len());
+    }
+    let mut factorization = Factorization::new(Arc::new(Pattern::new(vectors.len(), col_ptr, row_idx)?))?;
+    factorization.factorize(&values)?;
+    Ok(factorization)
+}

@@ -1,0 +1,262 @@
+//! Steps strung together: outputs, rejected steps, checkpoints.
+
+use crate::nonlinear::Failure;
+use crate::observe::Observer;
+use crate::report::Counts;
+
+use super::Options;
+use super::checkpoint::{Checkpoint, Tangent};
+use super::control::{Controller, Steps, Tolerances};
+use super::equations::Equations;
+use super::method::Integrator;
+use super::stability::highest_frequency;
+use super::state::Instantaneous;
+
+/// Explicit steps after which the limit of stability is estimated again.
+const LIMIT_EVERY: usize = 100;
+
+/// A motion while it is computed.
+pub(super) struct Simulation<'a> {
+    equations: Equations<'a>,
+    options: &'a Options,
+    integrator: Box<dyn Integrator>,
+    controller: Controller,
+    now: Instantaneous,
+    next: Instantaneous,
+    error: Vec<f64>,
+    /// What is allowed of the error of each coordinate: finite for positions only.
+    allowed: Vec<f64>,
+    /// The tangent that is kept from the last accepted step, when checkpoints are wanted.
+    tangent: Option<Tangent>,
+    /// Steps of this run and, after a checkpoint, all counts of the run before.
+    counts: Counts,
+    /// Factorisations of the system before this run.
+    earlier: usize,
+}
+
+impl<'a> Simulation<'a> {
+    pub fn new(equations: Equations<'a>, options: &'a Options) -> Self {
+        let n = equations.system.coordinates();
+        let earlier = equations.system.factorizations();
+        let mut allowed = vec![f64::INFINITY; n];
+        if let Steps::Controlled(Tolerances { rtol, atol, .. }) = options.steps {
+            for coordinate in equations.inertia.positions().iter().flat_map(|a| 3 * a..3 * a + 3) {
+                allowed[coordinate] = atol + rtol * equations.newton.scale()[coordinate];
+            }
+        }
+        Self {
+            equations,
+            options,
+            integrator: options.method.integrator(),
+            controller: Controller::new(0.0),
+            now: Instantaneous::default(),
+            next: Instantaneous::default(),
+            error: vec![0.0; n],
+            allowed,
+            tangent: None,
+            counts: Counts::default(),
+            earlier,
+        }
+    }
+
+    pub fn counts(&self) -> Counts {
+        Counts {
+            iterations: self.counts.iterations + self.equations.newton.iterations(),
+            factorizations: self.counts.factorizations + self.equations.system.factorizations() - self.earlier,
+            ..self.counts
+        }
+    }
+
+    pub fn reached(&self) -> f64 {
+        self.now.t
+    }
+
+    /// Sets the state at the start, or the one of a checkpoint.
+    pub fn begin(&mut self, checkpoint: Option<Checkpoint>, observer: &mut dyn Observer) -> Result<(), Failure> {
+        if let Some(checkpoint) = checkpoint {
+            self.resume(checkpoint)?;
+            return self.check_limit();
+        }
+        let q = self.equations.system.model().reference().to_vec();
+        let zeros = vec![0.0; q.len()];
+        let v = self.options.velocity.clone().unwrap_or_else(|| zeros.clone());
+        self.now = Instantaneous { q, v, a: zeros.clone(), external: zeros, ..Instantaneous::default() };
+        self.equations.accelerate(&mut self.now)?;
+        self.next = self.now.clone();
+        self.check_limit()?;
+        self.controller = Controller::new(match self.options.steps {
+            Steps::Fixed { step, .. } => step,
+            Steps::Controlled(tolerances) => tolerances.first_step.unwrap_or_else(|| self.first_step(tolerances)),
+        });
+        if self.options.outputs.first() == Some(&0.0) {
+            observer.state(self.now.output(&mut self.equations));
+        }
+        Ok(())
+    }
+
+    /// Integrates to the end.
+    pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
+        let end = self.steps(observer);
+        observer.checkpoint(&|| self.checkpoint(), true);
+        end
+    }
+
+    fn steps(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
+        let outputs = &self.options.outputs;
+        let mut outputs = outputs[outputs.partition_point(|t| *t <= self.now.t)..].iter().copied().peekable();
+        while self.now.t < self.options.until {
+            if observer.stop() {
+                return Err(Failure::Stopped);
+            }
+            match self.options.steps {
+                Steps::Fixed { step, .. } => {
+                    if self.counts.steps.is_multiple_of(LIMIT_EVERY) && self.counts.steps > 0 {
+                        self.check_limit()?;
+                    }
+                    // Steps are counted, so that their ends do not drift with rounding; the last may be shorter.
+                    let steps = (self.options.until / step - 1e-9).ceil().max(1.0) as usize;
+                    let count = self.counts.steps + 1;
+                    self.next.t = if count >= steps { self.options.until } else { count as f64 * step };
+                    self.try_step(observer).inspect_err(|failure| {
+                        self.counts.rejected += usize::from(*failure != Failure::Stopped);
+                    })?;
+                }
+                Steps::Controlled(tolerances) => {
+                    let target = outputs.peek().map_or(self.options.until, |t| t.min(self.options.until));
+                    self.controlled_step(tolerances, target, observer)?;
+                }
+            }
+            self.counts.steps += 1;
+            while let Some(t) = outputs.next_if(|t| *t <= self.next.t) {
+                let quintic = self.integrator.order() > 2;
+                let state = if t == self.next.t {
+                    self.next.output(&mut self.equations)
+                } else {
+                    Instantaneous::between(&self.now, &self.next, t, quintic).output(&mut self.equations)
+                };
+                observer.state(state);
+            }
+            std::mem::swap(&mut self.now, &mut self.next);
+            if observer.wants_checkpoints() {
+                self.tangent = Tangent::of(&self.equations);
+            }
+            observer.reached(self.now.t);
+            observer.checkpoint(&|| self.checkpoint(), false);
+        }
+        Ok(())
+    }
+
+    fn try_step(&mut self, observer: &dyn Observer) -> Result<(), Failure> {
+        self.integrator.step(&mut self.equations, &self.now, &mut self.next, &mut self.error, observer)?;
+        let finite = self.next.q.iter().chain(&self.next.v).chain(&self.next.a).all(|x| x.is_finite());
+        if finite { Ok(()) } else { Err(Failure::Overflow { t: self.next.t }) }
+    }
+
+    /// A step within the tolerances that does not go beyond `target`.
+    ///
+    /// A step may add as much of the allowed error as its share of the duration, so that together they add no more.
+    fn controlled_step(&mut self, tolerances: Tolerances, target: f64, observer: &dyn Observer) -> Result<(), Failure> {
+        let power = self.integrator.error_order() as f64;
+        let mut cause = None;
+        loop {
+            let left = target - self.now.t;
+            let step = self.controller.step.min(tolerances.max_step);
+            // Two equal steps rather than one and a tiny rest.
+            let h = if step > 0.999 * left { left } else { step.min(0.5 * left).max(step.min(left - step)) };
+            self.next.t = if h == left { target } else { self.now.t + h };
+            if h < tolerances.min_step.min(left) || self.next.t <= self.now.t {
+                return Err(Failure::StepTooSmall { t: self.now.t, step: h, cause });
+            }
+            match self.try_step(observer) {
+                Ok(()) => {
+                    let error = self.relative_error() * self.options.until / h;
+                    if error <= 1.0 {
+                        self.controller.accept(h, error, power);
+                        return Ok(());
+                    }
+                    if error.is_finite() {
+                        self.controller.reject(h, error, power);
+                    } else {
+                        self.controller.cut(h);
+                    }
+                    cause = None;
+                }
+                Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
+                Err(failure) => {
+                    self.controller.cut(h);
+                    self.counts.unsolved += 1;
+                    cause = Some(Box::new(failure));
+                }
+            }
+            self.counts.rejected += 1;
+        }
+    }
+
+    /// The largest error of a position, relative to what is allowed in all.
+    fn relative_error(&self) -> f64 {
+        let errors = self.error.iter().zip(&self.allowed).map(|(error, allowed)| error.abs() / allowed);
+        // Not f64::max, which would drop a NaN.
+        errors.fold(0.0, |worst, error| if error > worst || error.is_nan() { error } else { worst })
+    }
+
+    /// A first step in which velocities and accelerations at the start move positions by little.
+    fn first_step(&mut self, tolerances: Tolerances) -> f64 {
+        let power = 1.0 / (self.integrator.error_order() as f64 + 1.0);
+        let share = 0.1 * tolerances.rtol.powf(power) / tolerances.rtol;
+        let mut step = self.options.until;
+        for ((v, a), allowed) in self.now.v.iter().zip(&self.now.a).zip(&self.allowed) {
+            let distance = share * allowed;
+            step = step.min(distance / v.abs()).min((2.0 * distance / a.abs()).sqrt());
+        }
+        if let Some(limit) = self.limit() {
+            step = step.min(limit);
+        }
+        step
+    }
+
+    /// The longest stable step of an explicit method in the present state.
+    ///
+    /// # Source
+    ///
+    /// Belytschko, Liu and Moran, Nonlinear Finite Elements for Continua and Structures (2000), (6.2.21) for damping.
+    fn limit(&mut self) -> Option<f64> {
+        let limit = self.integrator.explicit_limit()?;
+        let Equations { system, inertia, .. } = &mut self.equations;
+        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q);
+        let damping = system.model().bodies().iter().map(|body| body.plate().material.damping());
+        let ratio = damping.map(|d| 0.5 * (d.viscosity * omega + d.mass / omega)).fold(0.0, f64::max);
+        Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
+    }
+
+    /// Refuses a fixed explicit step that is not stable in the present state.
+    fn check_limit(&mut self) -> Result<(), Failure> {
+        let Steps::Fixed { step, force: false } = self.options.steps else { return Ok(()) };
+        match self.limit() {
+            Some(limit) if step > limit => Err(Failure::StepAboveLimit { t: self.now.t, step, limit }),
+            _ => Ok(()),
+        }
+    }
+
+    /// What is needed to go on from the last accepted step.
+    fn checkpoint(&self) -> Checkpoint {
+        Checkpoint {
+            method: self.options.method.name().to_owned(),
+            now: self.now.clone(),
+            controller: self.controller,
+            tangent: self.tangent.clone(),
+            counts: self.counts(),
+        }
+    }
+
+    fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), Failure> {
+        let Checkpoint { now, controller, tangent, counts, .. } = checkpoint;
+        self.next = now.clone();
+        (self.now, self.controller, self.counts) = (now, controller, counts);
+        if let Some(tangent) = &tangent {
+            tangent.restore(&mut self.equations)?;
+            self.earlier = self.equations.system.factorizations();
+        }
+        self.tangent = tangent;
+        Ok(())
+    }
+}

@@ -1,0 +1,119 @@
+//! What cannot go on says so, and keeps what it had.
+
+mod common;
+
+use ancf_core::Material;
+use ancf_core::dynamics::{Method, Steps, Tolerances};
+use ancf_core::element::NodalVector;
+use ancf_core::model::{Course, Fix, History, Load, LoadKind, SupportMotion};
+use ancf_core::nonlinear::Failure;
+use ancf_core::report::Outcome;
+use common::{end, options, pendulum, plate, rubber, simulate};
+
+fn failure(outcome: Outcome) -> Failure {
+    match outcome {
+        Outcome::Failed(failure) => failure,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The limit that is reported is the limit: just below it a motion is stable, above it is refused, and forced it blows up.
+#[test]
+fn explicit_steps_above_the_limit_are_refused() {
+    let model = pendulum(2);
+    let (_, run) = simulate(model.clone(), &options(Method::Verlet { lumped: false }, Steps::fixed(0.1), 0.3));
+    let Failure::StepAboveLimit { step, limit, .. } = failure(run.outcome) else { panic!() };
+    assert_eq!(step, 0.1);
+    // The plate stretches by a few percent, so stiffness stays: 0.8 of the limit at rest holds all the way.
+    end(model.clone(), &options(Method::Verlet { lumped: false }, Steps::fixed(0.8 * limit), 0.3));
+    let forced = Steps::Fixed { step: 1.5 * limit, force: true };
+    let (_, run) = simulate(model.clone(), &options(Method::Verlet { lumped: false }, forced, 3.0));
+    assert!(matches!(failure(run.outcome), Failure::Overflow { .. }));
+    let message = Failure::StepAboveLimit { t: 0.0, step, limit }.to_string();
+    assert!(message.contains(&format!("{limit:.4e}")), "{message}");
+}
+
+/// A plate that is pressed into itself faster than it can resist: the step is cut as far as allowed, states are kept.
+#[test]
+fn a_collapsing_element_ends_a_controlled_run() {
+    let (mut model, body) = plate(1, 0.3, 0.01, rubber());
+    model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
+    let kind = LoadKind::Line {
+        body,
+        edge: ancf_core::model::Model::edge_at("edge:x1".parse().unwrap()).unwrap(),
+        per_length: [-1e9, 0.0, 0.0],
+    };
+    model.add_load(Load { kind, history: History::table(vec![[0.1, 0.0], [0.2, 1.0]]).unwrap() }).unwrap();
+    for method in [Method::Hht { alpha: -0.05 }, Method::Esdirk, Method::Rk] {
+        let tolerances = Tolerances { rtol: 1e-3, min_step: 1e-4, ..Tolerances::default() };
+        let mut options = options(method, Steps::Controlled(tolerances), 0.3);
+        options.outputs = vec![0.05, 0.1, 0.3];
+        let (states, run) = simulate(model.clone(), &options);
+        let failure = failure(run.outcome);
+        assert!(matches!(failure, Failure::StepTooSmall { .. }), "{failure}");
+        assert!(states.len() >= 2 && run.reached >= 0.1 && run.reached < 0.3, "{} {}", states.len(), run.reached);
+        assert!(states.iter().all(|state| state.q.iter().all(|x| x.is_finite())));
+    }
+}
+
+/// The same load at a fixed step: the step that cannot be made is a failure, not accepted.
+#[test]
+fn a_load_that_cannot_be_carried_ends_a_fixed_run() {
+    let (mut model, body) = plate(1, 0.3, 0.0005, rubber());
+    model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
+    let history = History::table(vec![[0.1, 0.0], [0.11, 1.0]]).unwrap();
+    model.add_load(Load { kind: LoadKind::Pressure { body, pressure: 1e9 }, history }).unwrap();
+    let mut options = options(Method::Hht { alpha: -0.05 }, Steps::fixed(0.01), 0.3);
+    options.outputs = vec![0.1, 0.3];
+    let (states, run) = simulate(model, &options);
+    assert_eq!(states.len(), 1);
+    assert!((run.reached - 0.1).abs() < 1e-12 && run.counts.rejected == 1);
+    let failure = failure(run.outcome);
+    assert!(
+        matches!(failure, Failure::NotConverged { .. } | Failure::Diverged { .. } | Failure::NotFinite { .. }),
+        "{failure}"
+    );
+}
+
+#[test]
+fn a_plate_without_mass_cannot_move() {
+    let (model, _) = plate(1, 0.3, 0.01, Material::new(1e5, 0.3, 0.0).unwrap());
+    for method in Method::ALL {
+        let (_, run) = simulate(model.clone(), &options(method, Steps::fixed(0.01), 0.1));
+        assert_eq!(failure(run.outcome), Failure::Massless { body: "plate".into() });
+    }
+}
+
+#[test]
+fn contradictory_motions_are_refused() {
+    let (mut model, body) = plate(2, 0.3, 0.01, rubber());
+    let shaken = |frequency| SupportMotion {
+        translation: vec![([0.0, 0.0, 1.0], Course::Sine { amplitude: 0.01, frequency })],
+        ..SupportMotion::default()
+    };
+    let r = [Fix { vector: NodalVector::R, component: None }];
+    model.move_support(body, "edge:x0".parse().unwrap(), &r, shaken(2.0)).unwrap();
+    // The corner belongs to both edges.
+    let before = model.clone();
+    let error = model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(3.0)).unwrap_err();
+    assert_eq!(error.argument, "motion");
+    assert!(model.fix(body, "corner:x0y1".parse().unwrap(), r[0]).is_err());
+    assert_eq!((model.fixed(), model.moved()), (before.fixed(), before.moved()), "nothing is changed by an error");
+    model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(2.0)).unwrap();
+    let late = SupportMotion {
+        translation: vec![([1.0; 3], Course::table(vec![[0.0, 1.0], [1.0, 2.0]]).unwrap())],
+        ..SupportMotion::default()
+    };
+    assert!(model.move_support(body, "edge:x1".parse().unwrap(), &r, late).is_err());
+}
+
+#[test]
+fn a_tolerance_below_rounding_says_so() {
+    let mut options = options(Method::Hht { alpha: -0.05 }, Steps::fixed(1e-3), 0.3);
+    options.newton.tolerance = 1e-15;
+    let model = common::pendulum_of(4, 0.0005, Material::new(2e11, 0.3, 7810.0).unwrap());
+    let (_, run) = simulate(model, &options);
+    let failure = failure(run.outcome);
+    assert!(matches!(failure, Failure::BelowRounding { tolerance: 1e-15, .. }), "{failure}");
+    assert!(Steps::controlled(1e-15).validate().is_err());
+}

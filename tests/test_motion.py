@@ -1,0 +1,139 @@
+"""Methods, error control, damping, moved supports and checkpoints from Python."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+import pytest
+
+import ancf
+from ancf.run import Method
+
+METHODS = get_args(Method)
+# The pendulum of Dufva and Shabana (2005) with 2 x 2 elements, m: two implementations agree on it.
+TIP = [0.22634, 0.22634, -0.44155]
+
+
+def pendulum(divisions: int = 2, **support: Any) -> ancf.Model:
+    rubber = ancf.Material(E=1e5, nu=0.3, density=7810.0)
+    plate = ancf.Rectangle(
+        size=(0.3, 0.3), divisions=(divisions, divisions), thickness=0.01, material=rubber, membrane="full"
+    )
+    return ancf.Model(
+        bodies={"plate": plate},
+        supports=[ancf.Support(at="corner:x0y0", fix=["r"], **support)],
+        loads=[ancf.Gravity(acceleration=(0.0, 0.0, -9.81))],
+        probes=[ancf.Probe(name="A", at=(0.3, 0.3))],
+    )
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_method_keeps_the_tolerance(method: Method) -> None:
+    result = ancf.simulate(pendulum(), until=0.3, rtol=3e-5, method=method, outputs=[0.3])
+    np.testing.assert_allclose(result.probes["A"].value[-1], TIP, atol=3e-4 * 0.3 * 2**0.5)
+
+
+def test_explicit_steps_above_the_limit_are_refused() -> None:
+    with pytest.raises(ancf.SolveError, match="above the limit") as failed:
+        ancf.simulate(pendulum(), until=0.3, step=0.05, method="verlet")
+    assert len(failed.value.result.t) == 0
+    ancf.simulate(pendulum(), until=0.1, step=0.05, method="verlet", force=True, throw=False)
+
+
+def test_damping_slows_a_free_body_exponentially() -> None:
+    rubber = ancf.Material(E=1e5, nu=0.3, density=7810.0, mass_damping=2.0)
+    plate = ancf.Rectangle(size=(0.3, 0.3), divisions=(1, 1), thickness=0.01, material=rubber)
+    model = ancf.Model(bodies={"plate": plate})
+    velocity = np.tile([1.0, 2.0, 3.0, 0, 0, 0, 0, 0, 0], 4)
+    result = ancf.simulate(model, until=0.5, step=1e-3, method="esdirk", velocity=velocity)
+    np.testing.assert_allclose(result.v[-1][:3], np.exp(-1.0) * velocity[:3], rtol=1e-9)
+    lost = result.energy.kinetic[0] - result.energy.kinetic[-1]
+    np.testing.assert_allclose(result.energy.dissipated[-1], lost, rtol=1e-9)
+
+
+def test_a_shaken_corner_moves_as_prescribed() -> None:
+    model = pendulum(shake={"amplitude": (0.0, 0.01, 0.0), "frequency": 2.0})
+    result = ancf.simulate(model, until=0.3, step=1e-3, every=0.05)
+    np.testing.assert_allclose(result.q[:, 1], 0.01 * np.sin(4 * np.pi * result.t), atol=1e-8)
+    balance = result.energy.kinetic + result.energy.membrane + result.energy.bending - result.energy.loads
+    assert abs(balance[-1]) < 1e-3 * result.energy.loads[-1]
+
+
+def test_a_turned_corner_carries_its_gradient() -> None:
+    model = pendulum(rotation={"axis": (0.0, 0.0, 1.0), "angle": [[0, 0], [0.1, 0.2], [0.2, 0.5]]})
+    turned = ancf.Model(
+        bodies=model.bodies,
+        supports=[ancf.Support(at="edge:x0", clamp=True, rotation=model.supports[0].rotation)],
+    )
+    result = ancf.simulate(turned, until=0.2, step=1e-3, outputs=[0.2])
+    np.testing.assert_allclose(result.q[-1][3:6], [np.cos(0.5), np.sin(0.5), 0.0], atol=1e-14)
+
+
+SCENE = """
+[material.rubber]
+E = 1e5
+nu = 0.3
+density = 7810
+
+[body.plate]
+shape = "rectangle"
+size = [0.3, 0.3]
+divisions = [4, 4]
+thickness = 0.01
+material = "rubber"
+
+[[support]]
+at = "corner:x0y0"
+fix = ["r"]
+
+[[load]]
+kind = "gravity"
+acceleration = [0, 0, -9.81]
+
+[run]
+kind = "dynamic"
+until = 2.0
+step = 5e-4
+reuse = true
+every = 0.01
+"""
+
+
+def run(scene: Path, folder: Path, *arguments: str | Path) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "ancf", "run", scene, "-o", folder, "--quiet", *arguments]
+    return subprocess.Popen(command, stderr=subprocess.DEVNULL)
+
+
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
+def test_a_stopped_run_goes_on_to_the_same_bits(tmp_path: Path, number: signal.Signals) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(SCENE)
+    whole, stopped, checkpoint = tmp_path / "whole", tmp_path / "stopped", tmp_path / "checkpoint"
+    assert run(scene, whole).wait() == 0
+    process = run(scene, stopped, "--checkpoint", checkpoint)
+    while not checkpoint.exists() and process.poll() is None:
+        time.sleep(0.01)
+    os.kill(process.pid, number)
+    assert process.wait() == (130 if number == signal.SIGINT else -number)
+    assert run(scene, stopped, "--resume", checkpoint).wait() == 0
+    with np.load(whole / "result.npz") as expected, np.load(stopped / "result.npz") as found:
+        for name in ("t", "q", "v", "a"):
+            assert np.array_equal(expected[name], found[name])
+
+
+def test_a_broken_checkpoint_is_refused(tmp_path: Path) -> None:
+    checkpoint = tmp_path / "checkpoint"
+    ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=checkpoint)
+    checkpoint.write_bytes(checkpoint.read_bytes()[:-8])
+    with pytest.raises(ancf.InputError, match="whole checkpoint file"):
+        ancf.simulate(pendulum(), until=0.01, step=1e-3, resume=checkpoint)
+    ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=checkpoint)
+    with pytest.raises(ancf.InputError, match="nodal coordinates"):
+        ancf.simulate(pendulum(4), until=0.01, step=1e-3, resume=checkpoint)
+    with pytest.raises(ancf.InputError, match="method"):
+        ancf.simulate(pendulum(), until=0.01, step=1e-3, method="esdirk", resume=checkpoint)
