@@ -12,12 +12,10 @@ use ancf_core::model::{BodyId, Fix, History, Load, LoadKind, Model, Plate};
 use ancf_core::nonlinear;
 use ancf_core::observe::State;
 use ancf_core::report::{Outcome, Run};
-use ancf_core::strain::CurvatureLaw;
 
 /// A square plate, flat and at rest.
 pub fn plate(divisions: usize, side: f64, thickness: f64, material: Material) -> (Model, BodyId) {
-    let plate =
-        Plate { material, thickness, element: Kind::Thin36, membrane: Membrane::Full, curvature: CurvatureLaw::Paper };
+    let plate = Plate { material, thickness, element: Kind::Thin36, membrane: Some(Membrane::Full), curvature: None };
     let mut model = Model::new();
     let surface = Surface::rectangle([side, side]).unwrap();
     let body = model.add_body("plate", &surface, [divisions, divisions], plate).unwrap();
