@@ -1,7 +1,6 @@
 //! What a solve tells while it runs, and how it is stopped.
 
 use crate::assembly::StrainEnergy;
-use crate::dynamics::Checkpoint;
 
 /// A state that was accepted: an output of a solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,8 +42,9 @@ pub trait Observer {
         false
     }
 
-    /// A step of a motion was accepted, or the run has ended (`last`); `make` gives the last accepted step to go on from.
-    fn checkpoint(&mut self, _make: &dyn Fn() -> Checkpoint, _last: bool) {}
+    /// A step of a motion was accepted, or the run has ended (`last`). `make` gives the bytes of a file to go on from the
+    /// last accepted step, which holds the given outputs.
+    fn checkpoint(&mut self, _make: &dyn Fn(&[State]) -> Vec<u8>, _last: bool) {}
 
     /// Whether to stop; asked before every Newton iteration.
     fn stop(&self) -> bool {

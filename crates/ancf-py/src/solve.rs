@@ -63,10 +63,10 @@ struct Saved {
 
 impl Saved {
     /// Replaces the file by one for the present step, in one go, so that there is always a whole one.
-    fn write(&mut self, checkpoint: &Checkpoint) -> std::io::Result<()> {
+    fn write(&mut self, make: &dyn Fn(&[State]) -> Vec<u8>) -> std::io::Result<()> {
         let mut temporary = self.path.clone().into_os_string();
         temporary.push(".new");
-        std::fs::write(&temporary, checkpoint.to_bytes(&self.states))?;
+        std::fs::write(&temporary, make(&self.states))?;
         std::fs::rename(temporary, &self.path)?;
         self.written = Some(Instant::now());
         Ok(())
@@ -93,11 +93,11 @@ impl Observer for Messenger {
         self.saved.is_some()
     }
 
-    fn checkpoint(&mut self, make: &dyn Fn() -> Checkpoint, last: bool) {
+    fn checkpoint(&mut self, make: &dyn Fn(&[State]) -> Vec<u8>, last: bool) {
         let Some(saved) = &mut self.saved else { return };
         let recent = saved.written.is_some_and(|written| written.elapsed() < BETWEEN_CHECKPOINTS);
         if (last || !recent)
-            && let Err(error) = saved.write(&make())
+            && let Err(error) = saved.write(make)
         {
             let _ = self.events.send(Event::Unsaved(error));
         }

@@ -70,7 +70,7 @@ impl Checkpoint {
     }
 
     /// The checkpoint, and the outputs so far, as bytes for a file; numbers in 8 bytes, lowest first.
-    pub fn to_bytes(&self, states: &[State]) -> Vec<u8> {
+    pub(super) fn to_bytes(&self, states: &[State]) -> Vec<u8> {
         let mut words = Words(MAGIC.to_vec());
         self.write(&mut words);
         words.count(states.len());

@@ -97,7 +97,7 @@ impl<'a> Simulation<'a> {
     /// Integrates to the end.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
         let end = self.steps(observer);
-        observer.checkpoint(&|| self.checkpoint(), true);
+        observer.checkpoint(&|states| self.checkpoint().to_bytes(states), true);
         end
     }
 
@@ -141,7 +141,7 @@ impl<'a> Simulation<'a> {
                 self.tangent = Tangent::of(&self.equations);
             }
             observer.reached(self.now.t);
-            observer.checkpoint(&|| self.checkpoint(), false);
+            observer.checkpoint(&|states| self.checkpoint().to_bytes(states), false);
         }
         Ok(())
     }
