@@ -55,12 +55,14 @@ fn a_cantilever_carries_its_load() {
         for x in points {
             let at = |quantity| value(&model, body, [x, 0.11], quantity, q);
             let moment = p * (length - x);
+            // Of a membrane strain: some hundred times that of one.
+            let rounding = 1e-13 * YOUNG;
             let stress = 6.0 * moment / (h * h);
             let name = format!("{element:?}, x = {x}");
             assert_close(at(Quantity::Moment), [moment, 0.0, 0.0], tolerance * p, &name);
             assert_close(at(Quantity::ShearForce), [p, 0.0, 0.0], tolerance * p, &name);
-            assert_close(at(Quantity::StressTop), [-stress, 0.0, 0.0], tolerance * stress, &name);
-            assert_close(at(Quantity::StressBottom), [stress, 0.0, 0.0], tolerance * stress, &name);
+            assert_close(at(Quantity::StressTop), [-stress, 0.0, 0.0], tolerance * stress + rounding, &name);
+            assert_close(at(Quantity::StressBottom), [stress, 0.0, 0.0], tolerance * stress + rounding, &name);
         }
     }
 }
