@@ -77,3 +77,37 @@ def test_unrolled_cylinder() -> None:
     membrane, bending = curved._assembled.energy(flat)
     assert bending == pytest.approx(2.1e11 * h**3 * np.pi / (24 * (1 - 0.3**2) * R**2), rel=5e-4)
     assert membrane < 1e-3 * bending
+
+
+@pytest.mark.parametrize("element", ["thin36", "thin48", "full48a", "full48b"])
+def test_every_element_rests_on_every_shape(element: str) -> None:
+    """No energy at rest, and as many nodal coordinates as the element has vectors."""
+    for body in SHAPES.values():
+        shell = model(body.model_copy(update={"element": element}))
+        q = shell.nodal_coordinates()
+        assert len(q) == 7 * 5 * (9 if element == "thin36" else 12)
+        stretched = shell._assembled.energy(1.001 * q)
+        assert sum(shell._assembled.energy(q)) < 1e-20 * sum(stretched)
+
+
+def test_pressure_vessel() -> None:
+    """A cylinder under internal pressure p, free to grow: the hoop force is p R, the stress p R / h."""
+    R, h, p = 2.0, 0.01, 1e4
+    quarter = ancf.Cylinder(
+        radius=R, angle=(0, np.pi / 2), length=(0, 1), divisions=(12, 2), thickness=h, material=STEEL, element="thin48"
+    )
+    points = [ancf.Probe(name=name, at=(0.7, 0.4), quantity=name) for name in ("membrane_force", "stress_top")]
+    vessel = ancf.Model(
+        bodies={"shell": quarter},
+        supports=[
+            ancf.Support(at="edge:x0", fix=["r.y", "r_x.x", "r_y.y", "r_xy.x"]),
+            ancf.Support(at="edge:x1", fix=["r.x", "r_x.y", "r_y.x", "r_xy.y"]),
+            ancf.Support(at="edge:y0", fix=["r.z", "r_x.z"]),
+        ],
+        loads=[ancf.Pressure(pressure=p)],
+        probes=points,
+    )
+    result = ancf.solve_static(vessel)
+    force, stress = (result.probes[name].value[-1] for name in ("membrane_force", "stress_top"))
+    np.testing.assert_allclose(force, [p * R, 0, 0], atol=5e-3 * p * R)
+    np.testing.assert_allclose(stress, [p * R / h, 0, 0], atol=1e-2 * p * R / h)

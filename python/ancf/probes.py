@@ -8,7 +8,19 @@ from pydantic import Field
 
 from ancf.inputs import OnBody, Point
 
-Quantity: TypeAlias = Literal["position", "displacement", "velocity", "normal", "membrane_strain", "curvature"]
+Quantity: TypeAlias = Literal[
+    "position",
+    "displacement",
+    "velocity",
+    "normal",
+    "membrane_strain",
+    "curvature",
+    "membrane_force",
+    "moment",
+    "shear_force",
+    "stress_top",
+    "stress_bottom",
+]
 
 
 class Meaning(NamedTuple):
@@ -28,6 +40,11 @@ QUANTITIES: dict[Quantity, Meaning] = {
     "normal": Meaning("", _VECTOR),
     "membrane_strain": Meaning("", _SYMMETRIC),
     "curvature": Meaning("1/m", _SYMMETRIC),
+    "membrane_force": Meaning("N/m", _SYMMETRIC),
+    "moment": Meaning("N", _SYMMETRIC),
+    "shear_force": Meaning("N/m", ("xz", "yz")),
+    "stress_top": Meaning("Pa", _SYMMETRIC),
+    "stress_bottom": Meaning("Pa", _SYMMETRIC),
 }
 
 
@@ -44,7 +61,11 @@ class Probe(OnBody):
         Natural coordinates of the material point.
     quantity : str, default "position"
         "position" or "displacement", m, "velocity", m/s, or the unit "normal", components x, y, z;
-        "membrane_strain" or "curvature", 1/m, components xx, yy, xy in the natural coordinates, the last doubled.
+        "membrane_strain" or "curvature", 1/m, components xx, yy and doubled xy; "membrane_force", N/m, "moment",
+        N m/m, "stress_top" and "stress_bottom", Pa, second Piola-Kirchhoff on the face that the normal points to and on
+        the other one, components xx, yy, xy; "shear_force", N/m, components xz, yz, what the part beyond a cut exerts
+        along the normal. These have their components in the orthonormal frame of the shape at rest: x along r_x, y
+        across it in the tangent plane.
 
     Raises
     ------

@@ -396,13 +396,14 @@ impl Model {
         }
         let points: Vec<MaterialPoint> = points
             .iter()
-            .map(|point| checked(py, MaterialPoint::new(&self.model, body, [point[0], point[1]])))
+            .map(|point| checked(py, MaterialPoint::new(&self.model, body, [point[0], point[1]], quantity)))
             .collect::<PyResult<_>>()?;
-        let mut values = Vec::with_capacity(3 * q.len() * points.len());
+        let components = quantity.components();
+        let mut values = Vec::with_capacity(components * q.len() * points.len());
         for (i, q) in q.iter().enumerate() {
             let v = v.as_ref().map_or(&rest, |v| &v[i]);
-            values.extend(points.iter().flat_map(|point| point.evaluate(quantity, q, v)));
+            values.extend(points.iter().flat_map(|point| point.evaluate(q, v).into_iter().take(components)));
         }
-        Ok(stack(py, (q.len(), points.len(), 3), values))
+        Ok(stack(py, (q.len(), points.len(), components), values))
     }
 }

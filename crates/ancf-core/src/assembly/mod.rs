@@ -37,7 +37,7 @@ pub struct Timers {
 /// Strain energy, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrainEnergy {
-    /// From membrane strain.
+    /// From membrane strain; of solid elements, whose energy is not split, all of it.
     pub membrane: f64,
     /// From curvature.
     pub bending: f64,

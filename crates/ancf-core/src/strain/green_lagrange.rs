@@ -43,7 +43,7 @@ impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
         COMPONENT.map(|[x, y, z]| axpy(stress[x], r[0], axpy(stress[y], r[1], scale(stress[z], r[2]))))
     }
 
-    /// `strain_de`, in the order of [`COMPONENT`], changes with the gradient `r_d` by `r_e`.
+    /// The strain `de` changes with the gradient `r_d` by `r_e`.
     #[inline(always)]
     fn stiffness(&self, weight: &[[Lanes<S>; 6]; 6], stress: [Lanes<S>; 6], form: &mut [Block<S>]) {
         let r = &self.gradients;

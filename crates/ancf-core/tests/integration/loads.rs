@@ -67,7 +67,7 @@ fn work_does_not_depend_on_the_mesh() {
 
 /// The position at a point of the body.
 fn position(system: &System, body: BodyId, at: [f64; 2], q: &[f64]) -> Vector3<f64> {
-    MaterialPoint::new(system.model(), body, at).unwrap().evaluate(Quantity::Position, q, q).into()
+    MaterialPoint::new(system.model(), body, at, Quantity::Position).unwrap().evaluate(q, q).into()
 }
 
 /// The volume between the plate and the origin, `1/3 integral of r . (r_x x r_y)`, with gradients from differences of
@@ -98,7 +98,8 @@ impl Volume {
                     let shifts = [[0, 0], [1, 0], [-1, 0], [2, 0], [-2, 0], [0, 1], [0, -1], [0, 2], [0, -2]]
                         .map(|s| s.map(f64::from));
                     points.push(shifts.map(|[i, j]| {
-                        MaterialPoint::new(system.model(), body, [x + i * step[0], y + j * step[1]]).unwrap()
+                        MaterialPoint::new(system.model(), body, [x + i * step[0], y + j * step[1]], Quantity::Position)
+                            .unwrap()
                     }));
                     weights.push(0.25 * l * w * wx * wy);
                 }
@@ -109,7 +110,7 @@ impl Volume {
 
     fn evaluate(&self, q: &[f64]) -> f64 {
         let part = |points: &[MaterialPoint; 9]| {
-            let r: Vec<Vector3<f64>> = points.iter().map(|p| p.evaluate(Quantity::Position, q, q).into()).collect();
+            let r: Vec<Vector3<f64>> = points.iter().map(|p| p.evaluate(q, q).into()).collect();
             let along = |k: usize, step: f64| (8.0 * (r[k] - r[k + 1]) - (r[k + 2] - r[k + 3])) / (12.0 * step);
             r[0].dot(&along(1, self.step[0]).cross(&along(5, self.step[1]))) / 3.0
         };
@@ -157,7 +158,7 @@ fn edge_frame(system: &System, body: BodyId, edge: &str, at: [f64; 2], q: &[f64]
     };
     let along = 8.0 * (shifted(1.0) - shifted(-1.0)) - (shifted(2.0) - shifted(-2.0));
     let normal: Vector3<f64> =
-        MaterialPoint::new(system.model(), body, at).unwrap().evaluate(Quantity::Normal, q, q).into();
+        MaterialPoint::new(system.model(), body, at, Quantity::Normal).unwrap().evaluate(q, q).into();
     // Counter-clockwise around the plate the outward direction is tangent x normal.
     let sign = if edge == "x1" || edge == "y0" { 1.0 } else { -1.0 };
     [sign * along.normalize().cross(&normal), normal]

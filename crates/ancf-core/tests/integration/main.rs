@@ -10,5 +10,6 @@ mod invariance;
 mod load_paths;
 mod loads;
 mod reference_shapes;
+mod resultants;
 mod statics;
 mod threads;
