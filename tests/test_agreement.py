@@ -47,6 +47,8 @@ def pair(
         E=E,
         nu=nu,
         density=density,
+        mass_damping=0.0,
+        viscosity=0.0,
         element="thin36",
         membrane=membrane,
         curvature=curvature,

@@ -42,7 +42,7 @@ def test_arguments_are_those_of_the_scene(function: object, options: type[ancf.S
         ({"E": np.nan}, "E = nan: must be a finite number"),
         ({"nu": 0.5}, "nu = 0.5: must be less than 0.5"),
         ({"density": -1.0}, "density = -1.0: must be greater than or equal to 0"),
-        ({"rho": 1.0}, "rho = 1.0: unknown key; allowed are E, nu, density"),
+        ({"rho": 1.0}, "rho = 1.0: unknown key; allowed are E, nu, density, mass_damping, viscosity"),
     ],
 )
 def test_a_wrong_argument_is_named(change: dict[str, object], message: str) -> None:

@@ -52,8 +52,8 @@ PENDULUM = [
     ("step = 5e-3", "", "run.step: give either step, for fixed steps, or rtol, for error control", ""),
     ("step = 5e-3", "step = 5e-3\nrtol = 1e-4", "run.step = 0.005: give either step", ""),
     ("step = 5e-3", "step = 5e-3\natol = 1e-4", "run.atol = 0.0001: is for error control", ""),
-    ("step = 5e-3", "rtol = 1e-15", "run.rtol = 1e-15: must be greater than or equal to 1e-12", ""),
-    ('fix = ["r"]', 'fix = ["r"]\ntranslation = [[0, 0, 0, 1], [1, 0, 0, 2]]', "support.0.translation", "0 at time 0"),
+    ("step = 5e-3", "rtol = 1e-15", "run.rtol = 1e-15: must be greater than or equal to", ""),
+    ('fix = ["r"]', 'fix = ["r"]\ntranslation = [[0, 0, 0, 1], [1, 0, 0, 2]]', "support.0.motion", "0 at time 0"),
     ('"hht"', '"generalized_alpha"', 'run.alpha = -0.05: is for method = "hht" only', ""),
     ("alpha = -0.05", "alpha = 0.1", "run.alpha = 0.1: must be less than or equal to 0", ""),
     ("step = 5e-3", "step = 0", "run.step = 0: must be greater than 0", ""),
@@ -109,7 +109,7 @@ def test_all_mistakes_are_told(edit: Edit, capsys: pytest.CaptureFixture[str], t
     )
     assert main(["run", str(path), "-o", str(tmp_path / "out")]) == 2
     told = capsys.readouterr().err
-    paths = ("material.rubber.nu", "body.plate.thickness", "load.0.acceleration", "run.step:", "run.steps")
+    paths = ("material.rubber.nu", "body.plate.thickness", "load.0.acceleration", "run.steps")
     assert all(key in told for key in paths)
     assert len(told.splitlines()) == len(paths)
 

@@ -8,6 +8,7 @@ import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -108,7 +109,7 @@ def summarize(title: str, result: Result) -> dict[str, Any]:
     dict
         Of plain Python values.
     """
-    energy = result.energy
+    energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
     return {
         "title": title,
         "status": result.status,
@@ -118,7 +119,7 @@ def summarize(title: str, result: Result) -> dict[str, Any]:
         "counts": _plain(result.counts),
         "seconds": _plain(result.seconds),
         "probes": {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()},
-        "energy": _plain({name: getattr(energy, name) for name in ("t", "kinetic", "membrane", "bending", "loads")}),
+        "energy": _plain(energy),
     }
 
 

@@ -139,7 +139,7 @@ class Dynamic(_Run):
     rtol : float, optional
         Error control: the errors that the steps add to a position stay, together, below this times the size of the
         body. From 1e-12 to below 1.
-    atol : float, default 0
+    atol : float, optional
         The same in m, added.
     first_step, max_step, min_step : float, optional
         With error control: the first, longest and shortest step, s; where a shorter one is needed the run fails.
@@ -182,10 +182,10 @@ class Dynamic(_Run):
     until: Positive
     step: Positive | None = None
     rtol: Annotated[float, Field(ge=1e-12, lt=1)] | None = None
-    atol: Annotated[float, Field(ge=0)] = 0.0
+    atol: Annotated[float, Field(ge=0)] | None = None
     first_step: Positive | None = None
     max_step: Positive | None = None
-    min_step: Annotated[float, Field(ge=0)] = 0.0
+    min_step: Annotated[float, Field(ge=0)] | None = None
     force: bool = False
     method: Method = "hht"
     alpha: Annotated[float, Field(ge=-1 / 3, le=0)] | None = None
@@ -203,14 +203,14 @@ class Dynamic(_Run):
         if self.step is not None and self.step > self.until:
             mistakes.add(("step",), "must not be greater than until", self.step)
         for name, method in (("alpha", "hht"), ("rho_inf", "generalized_alpha"), ("lumped", "verlet")):
-            if name in self.model_fields_set and getattr(self, name) is not None and self.method != method:
+            if getattr(self, name) not in (None, False) and self.method != method:
                 mistakes.add((name,), f'is for method = "{method}" only', getattr(self, name))
         for name in ("atol", "first_step", "max_step", "min_step"):
-            if name in self.model_fields_set and getattr(self, name) is not None and self.rtol is None:
+            if getattr(self, name) is not None and self.rtol is None:
                 mistakes.add((name,), "is for error control, with rtol, only", getattr(self, name))
         if self.force and self.step is None:
             mistakes.add(("force",), "is for fixed steps only", self.force)
-        if self.max_step is not None and self.min_step > self.max_step:
+        if self.max_step is not None and self.min_step is not None and self.min_step > self.max_step:
             mistakes.add(("min_step",), "must not be greater than max_step", self.min_step)
         if self.outputs is not None and self.every is not None:
             mistakes.add(("every",), "give either every or outputs", self.every)
@@ -241,7 +241,7 @@ class Dynamic(_Run):
         if self.step is not None:
             return self.step, self.force
         assert self.rtol is not None
-        return self.rtol, self.atol, self.first_step, self.max_step, self.min_step
+        return self.rtol, self.atol or 0.0, self.first_step, self.max_step, self.min_step or 0.0
 
     def check(self, model: Model) -> None:
         """Raise `InputError` if a body has no mass or a load is made for statics."""

@@ -87,7 +87,7 @@ def simulate(
     method: Method = "hht",
     alpha: float | None = None,
     rho_inf: float | None = None,
-    lumped: bool | None = None,
+    lumped: bool = False,
     outputs: Sequence[float] | None = None,
     every: float | None = None,
     velocity: ArrayLike | None = None,
@@ -137,28 +137,25 @@ newton, tolerance, max_iterations, reuse : optional
     Interrupted
         On Ctrl-C; `Interrupted.result` holds what it had.
     """
-    given: dict[str, Any] = {
-        "step": step,
-        "rtol": rtol,
-        "atol": atol,
-        "first_step": first_step,
-        "max_step": max_step,
-        "min_step": min_step,
-        "alpha": alpha,
-        "rho_inf": rho_inf,
-        "lumped": lumped,
-    }
     run = Dynamic(
         until=until,
+        step=step,
+        rtol=rtol,
+        atol=atol,
+        first_step=first_step,
+        max_step=max_step,
+        min_step=min_step,
         force=force,
         method=method,
+        alpha=alpha,
+        rho_inf=rho_inf,
+        lumped=lumped,
         outputs=outputs,
         every=every,
         newton=newton,
         tolerance=tolerance,
         max_iterations=max_iterations,
         reuse=reuse,
-        **{name: value for name, value in given.items() if value is not None},
     )
     given_velocity = None if velocity is None else _check_velocity(model, velocity)
     start = partial(run.start, velocity=given_velocity, checkpoint=checkpoint, resume=resume)
