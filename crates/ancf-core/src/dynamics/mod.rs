@@ -99,7 +99,7 @@ pub fn simulate(system: &mut System, options: &Options, observer: &mut dyn Obser
     let end = run(system, options, &mut newton, &mut counts, &mut reached, observer);
     counts.iterations = newton.iterations();
     let seconds = Seconds::new(system, start.elapsed());
-    Ok(Run { outcome: Outcome::from_end(end), reached, counts: counts.of(system), seconds })
+    Ok(Run { outcome: Outcome::from_end(end), reached, jumps: Vec::new(), counts: counts.of(system), seconds })
 }
 
 fn run(
