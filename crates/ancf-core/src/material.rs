@@ -70,6 +70,11 @@ impl Material {
         self.density
     }
 
+    /// The same with a density of at least `least`, kg/m3.
+    pub(crate) fn with_least_density(self, least: f64) -> Self {
+        Self { density: self.density.max(least), ..self }
+    }
+
     /// The plane-stress stiffness (Pa) for covariant strain components `xx`, `yy`, doubled `xy`, measured in
     /// coordinates with the contravariant metric `[a^xx, a^yy, a^xy]`.
     ///

@@ -49,7 +49,7 @@ impl Counts {
     /// The same with what the system knows.
     pub(crate) fn of(self, system: &System) -> Self {
         let (elements, dofs) = (system.elements(), system.free().len());
-        Self { elements, dofs, factorizations: system.factorizations(), ..self }
+        Self { elements, dofs, factorizations: self.factorizations + system.factorizations(), ..self }
     }
 }
 
@@ -88,6 +88,8 @@ pub struct Run {
     pub outcome: Outcome,
     /// Time, or load factor, of the last accepted step.
     pub reached: f64,
+    /// Load factors at which a structure in statics lost its equilibrium and jumped to another one.
+    pub jumps: Vec<f64>,
     /// What it took.
     pub counts: Counts,
     /// Where the time went.

@@ -123,7 +123,7 @@ pub fn simulate(
     let end = run(system, options, checkpoint, &mut counts, &mut reached, observer);
     let counts = Counts { factorizations: counts.factorizations, ..counts.of(system) };
     let seconds = Seconds::new(system, start.elapsed());
-    Ok(Run { outcome: Outcome::from_end(end), reached, counts, seconds })
+    Ok(Run { outcome: Outcome::from_end(end), reached, jumps: Vec::new(), counts, seconds })
 }
 
 fn run(

@@ -47,6 +47,12 @@ impl Body {
         Ok(Self { name: name.to_owned(), grid, plate, variant, first_vector })
     }
 
+    /// The same with a density of at least `least`, kg/m3.
+    pub(super) fn with_least_density(&self, least: f64) -> Self {
+        let material = self.plate.material.with_least_density(least);
+        Self { plate: Plate { material, ..self.plate }, ..self.clone() }
+    }
+
     /// The name.
     pub fn name(&self) -> &str {
         &self.name

@@ -132,6 +132,12 @@ impl Model {
         &self.loads
     }
 
+    /// The same model, every body with a density of at least `least`, kg/m3.
+    pub(crate) fn with_least_density(&self, least: f64) -> Self {
+        let bodies = self.bodies.iter().map(|body| body.with_least_density(least)).collect();
+        Self { bodies, ..self.clone() }
+    }
+
     /// The times, or load factors, strictly between two at which a load changes its rate, in the order they are met.
     pub fn kinks(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
         let between = |t: &f64| from.min(to) < *t && *t < from.max(to);

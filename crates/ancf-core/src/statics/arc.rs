@@ -28,7 +28,8 @@ const LIMIT: f64 = 0.05;
 pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
     let factors = &options.load_factors;
     let (first, target) = (factors[0] - path.at.load.t, factors[factors.len() - 1]);
-    let mut walk = Walk::new(path, first, options);
+    let step = options.first_step.unwrap_or(f64::INFINITY);
+    let mut walk = Walk::new(path, first, step, options.min_step);
     while path.at.load.t != target && path.steps < options.max_steps {
         walk.step(path, target, observer)?;
         path.steps += 1;
@@ -48,14 +49,15 @@ pub(super) struct Walk {
 
 impl Walk {
     /// From the last point of the path, whose tangent is factorised, in the direction in which the load factor changes
-    /// by `first`; no step is longer than the tangent is for that change.
-    pub fn new(path: &mut Path<'_>, first: f64, options: &Options) -> Self {
+    /// by `longest`; no step is longer than the tangent is for that change, the first and the shortest are that for
+    /// `first` and `shortest`.
+    pub fn new(path: &mut Path<'_>, longest: f64, first: f64, shortest: f64) -> Self {
         let metric = Metric::new(path);
         let rate = metric.rate(path, &path.at.q.clone(), path.at.load.t);
         let size = metric.length(&rate);
-        let length = size * options.first_step.unwrap_or(f64::INFINITY).min(first.abs());
-        let tangent = Tangent::new(rate, first.signum() / size);
-        Self { metric, tangent, length, shortest: size * options.min_step, longest: size * first.abs() }
+        let tangent = Tangent::new(rate, longest.signum() / size);
+        let [longest, shortest] = [longest.abs(), shortest].map(|change| size * change);
+        Self { metric, tangent, length: longest.min(size * first), shortest, longest }
     }
 
     /// Makes a step of the path; it ends where a limit point or the target is met.
@@ -108,7 +110,7 @@ fn advance(
     let predicted = q.clone();
     let t = from.load.t + length * tangent.t;
     let mut problem = Problem { t, stiffness: 1.0, ..Problem::default() };
-    let normal: Vec<f64> = tangent.q.iter().zip(&metric.weights).map(|(p, w)| w * p).collect();
+    let normal = metric.weighted(&tangent.q);
     let mut report = path.newton.solve_in_plane(path.system, &problem, &normal, &mut q, Some(&from.q), observer)?;
     let iterations = report.iterations;
 
@@ -163,22 +165,27 @@ impl Tangent {
 }
 
 /// Lengths of changes of the coordinates.
-struct Metric {
+pub(super) struct Metric {
     weights: Vec<f64>,
 }
 
 impl Metric {
-    fn new(path: &Path<'_>) -> Self {
+    pub fn new(path: &Path<'_>) -> Self {
         let free = path.system.free().len() as f64;
         Self { weights: path.newton.scale().iter().map(|s| 1.0 / (free * s * s)).collect() }
     }
 
-    fn product(&self, a: &[f64], b: &[f64]) -> f64 {
+    pub fn product(&self, a: &[f64], b: &[f64]) -> f64 {
         a.iter().zip(b).zip(&self.weights).map(|((a, b), w)| w * a * b).sum()
     }
 
-    fn length(&self, a: &[f64]) -> f64 {
+    pub fn length(&self, a: &[f64]) -> f64 {
         self.product(a, a).sqrt()
+    }
+
+    /// The vector whose product with another one is theirs in this metric.
+    pub fn weighted(&self, a: &[f64]) -> Vec<f64> {
+        a.iter().zip(&self.weights).map(|(a, w)| w * a).collect()
     }
 
     /// Change of the coordinates per change of the load factor; the tangent there is factorised.

@@ -9,6 +9,7 @@ use crate::nonlinear::{Failure, Problem};
 use crate::observe::Observer;
 
 use super::Options;
+use super::jump;
 use super::path::{Load, Path, Point};
 
 /// Displacement along the load's change relative to its prediction. Below, a structure that seems to stiffen may as well
@@ -28,9 +29,11 @@ const MISMATCH: f64 = 0.1;
 /// may be nothing but rounding.
 const SMALL: f64 = 1e-6;
 /// Energies are known to this accuracy only.
-const ROUNDING: f64 = 1e-10;
+pub(super) const ROUNDING: f64 = 1e-10;
 /// The number of iterations that a step should take.
 pub(super) const ITERATIONS: f64 = 8.0;
+/// Steps that fail one after the other before arc length is tried.
+const PATIENCE: usize = 4;
 
 /// Brings the loads that do not vanish at load factor 0 into equilibrium.
 pub(super) fn release(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
@@ -63,6 +66,7 @@ fn reach(
 ) -> Result<(), Failure> {
     // Changes of the coordinates, per length of step, that the tangent at the last point predicts.
     let mut rate = None;
+    let mut failed = 0;
     while path.at.load != target {
         let from = path.at.load;
         let left = (target.t - from.t).abs() + (target.held - from.held).abs();
@@ -80,7 +84,7 @@ fn reach(
             Ok(iterations) => {
                 path.steps += 1;
                 *step = length * (ITERATIONS / iterations as f64).powi(2).clamp(0.5, 4.0);
-                rate = None;
+                (rate, failed) = (None, 0);
                 observer.reached(path.at.load.t);
             }
             Err(failure @ (Failure::Stopped | Failure::TooLarge)) => {
@@ -93,7 +97,12 @@ fn reach(
                         Failure::Disconnected { progress, .. } => (progress / PROGRESS[0]).clamp(1e-2, 0.5),
                         _ => 0.5,
                     };
-                if *step < options.min_step {
+                failed += 1;
+                if from.held == 0.0 && (failed == PATIENCE || *step < options.min_step) {
+                    jump::pass(path, *step, target.t, options, observer)?;
+                    (rate, failed) = (None, 0);
+                    observer.reached(path.at.load.t);
+                } else if *step < options.min_step {
                     return Err(failure);
                 }
             }

@@ -1,6 +1,7 @@
 //! Equilibria along a load path: Newton's method inside load steps of adaptive size.
 
 mod arc;
+mod jump;
 mod load;
 mod path;
 
@@ -91,5 +92,7 @@ pub fn solve(system: &mut System, options: &Options, observer: &mut dyn Observer
     let mut path = Path::new(system, options.newton);
     let end = path.follow(options, observer);
     let (outcome, reached, counts) = (Outcome::from_end(end), path.at.load.t, path.counts());
-    Ok(Run { outcome, reached, counts: counts.of(system), seconds: Seconds::new(system, start.elapsed()) })
+    let jumps = path.jumps;
+    let seconds = Seconds::new(system, start.elapsed());
+    Ok(Run { outcome, reached, jumps, counts: counts.of(system), seconds })
 }

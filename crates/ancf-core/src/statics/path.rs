@@ -45,8 +45,13 @@ pub(super) struct Path<'a> {
     pub initial: Vec<f64>,
     /// Work of the loads so far, J.
     pub work: f64,
+    /// Load factors at which the structure has jumped.
+    pub jumps: Vec<f64>,
     pub steps: usize,
     pub rejected: usize,
+    /// Iterations and factorisations of jumps.
+    pub iterations: usize,
+    pub factorizations: usize,
 }
 
 impl<'a> Path<'a> {
@@ -58,7 +63,18 @@ impl<'a> Path<'a> {
         system.external_force(&q, 0.0, &mut initial);
         let load = Load { t: 0.0, held: 1.0 };
         let at = Point { load, q, energy: 0.0, negative_pivots: 0 };
-        Self { system, newton, at, initial, work: 0.0, steps: 0, rejected: 0 }
+        Self {
+            system,
+            newton,
+            at,
+            initial,
+            work: 0.0,
+            jumps: Vec::new(),
+            steps: 0,
+            rejected: 0,
+            iterations: 0,
+            factorizations: 0,
+        }
     }
 
     /// Follows the path from rest to its end.
@@ -105,8 +121,9 @@ impl<'a> Path<'a> {
 
     /// What the path has taken.
     pub fn counts(&self) -> Counts {
-        let (steps, rejected, iterations) = (self.steps, self.rejected, self.newton.iterations());
-        Counts { steps, rejected, unsolved: rejected, iterations, ..Counts::default() }
+        let iterations = self.newton.iterations() + self.iterations;
+        let Self { steps, rejected, factorizations, .. } = *self;
+        Counts { steps, rejected, unsolved: rejected, iterations, factorizations, ..Counts::default() }
     }
 
     /// Gives the last point to the observer.

@@ -15,7 +15,7 @@ use ancf_core::observe::State;
 use ancf_core::report::{Outcome, Run};
 use ancf_core::statics::{Control, Options, solve};
 
-use crate::common::{add_ramp, plate, rectangle, system};
+use crate::common::{add_ramp, line, plate, rectangle, system};
 
 /// A strip clamped at x0.
 struct Strip {
@@ -124,7 +124,7 @@ fn a_load_is_followed_through_the_kinks_of_its_history() {
 
 /// A hinged cylindrical roof under a central force, a quarter of it: R 2540, length 508, half angle 0.1 rad, E 3102.75,
 /// nu 0.3, force 3000 at load factor 1 (mm, N). Returns load factors, deflections and negative pivots along its path.
-fn hinged_roof(thickness: f64) -> (Run, Vec<[f64; 2]>, Vec<usize>) {
+fn hinged_roof(thickness: f64, control: Control) -> (Run, Vec<[f64; 2]>, Vec<usize>) {
     let mut model = Model::new();
     let surface = Surface::cylinder(2540.0, [FRAC_PI_2 - 0.1, FRAC_PI_2], [0.0, 254.0]).unwrap();
     let plate = plate(3102.75, 0.3, 1.0, thickness, Membrane::Projected);
@@ -146,7 +146,7 @@ fn hinged_roof(thickness: f64) -> (Run, Vec<[f64; 2]>, Vec<usize>) {
     }
     add_ramp(&mut model, LoadKind::Force { body, point: [FRAC_PI_2, 0.0], force: [0.0, -750.0, 0.0] });
     let first = 3 * model.body(body).vector(8, 0) + 1;
-    let options = Options { control: Control::Arc, ..Options::default() };
+    let options = Options { control, ..Options::default() };
     let (run, states) = path(model, &options);
     let points = states.iter().map(|state| [state.t, 2540.0 - state.q[first]]).collect();
     (run, points, states.iter().map(|state| state.negative_pivots.unwrap()).collect())
@@ -158,7 +158,7 @@ fn hinged_roofs_snap_through_and_back() {
     // Deflections at load factor 1 are interpolated in the table.
     let cases = [(12.7, [0.7421, 0.1729], 28.876), (6.35, [0.1953, -0.1288], 38.190)];
     for (thickness, limits, deflection) in cases {
-        let (run, points, negative) = hinged_roof(thickness);
+        let (run, points, negative) = hinged_roof(thickness, Control::Arc);
         let stable = negative.iter().take_while(|negative| **negative == 0).count();
         let top = points[..=stable].iter().map(|[t, _]| *t).fold(0.0, f64::max);
         let bottom = points[stable..].iter().map(|[t, _]| *t).fold(f64::INFINITY, f64::min);
@@ -170,4 +170,43 @@ fn hinged_roofs_snap_through_and_back() {
         assert_eq!(negative.last(), Some(&0));
         println!("{thickness}: limit points {top:.4}, {bottom:.4}; {:?}", run.counts);
     }
+}
+
+/// Under a load that only grows the roofs jump once, at the upper limit point, to the branch that arc length comes to, and
+/// set energy free.
+#[test]
+fn hinged_roofs_jump_under_a_growing_load() {
+    for (thickness, limit) in [(12.7, 0.7421), (6.35, 0.1953)] {
+        let (run, points, negative) = hinged_roof(thickness, Control::Load);
+        let (_, whole, _) = hinged_roof(thickness, Control::Arc);
+        println!("{thickness}: jumps at {:?}; {:?}", run.jumps, run.counts);
+        assert!(matches!(run.jumps[..], [t] if (t / limit - 1.0).abs() < 0.01), "{thickness}: {:?}", run.jumps);
+        let [found, expected] = [&points, &whole].map(|points| points[points.len() - 1][1]);
+        assert!((found - expected).abs() < 1e-6 * expected, "{thickness}: {found}, {expected}");
+        assert_eq!(negative, [0, 0]);
+        assert!(run.counts.steps < 12, "{thickness}: {:?}", run.counts);
+    }
+}
+
+/// A strip that is held at both ends and pushed together buckles: a bifurcation, where no load pushes it aside. Its half
+/// wave is that of Euler's column with clamped ends, whose load is `4 pi^2 E I / L^2`.
+#[test]
+fn a_compressed_strip_buckles_at_eulers_load() {
+    let ([length, width], thickness, young) = ([1.0, 0.1], 0.01, 2e11);
+    let (mut model, body) = rectangle([length, width], [8, 1], plate(young, 0.0, 0.0, thickness, Membrane::Projected));
+    model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
+    let held = [(NodalVector::R, 1), (NodalVector::R, 2), (NodalVector::RX, 1), (NodalVector::RX, 2)];
+    for (vector, component) in held {
+        model.fix(body, "edge:x1".parse().unwrap(), Fix { vector, component: Some(component) }).unwrap();
+    }
+    let critical = 4.0 * PI * PI * young * thickness.powi(3) / 12.0 / (length * length);
+    add_ramp(&mut model, line(body, "edge:x1", [-1.05 * critical, 0.0, 0.0]));
+    let middle = 3 * model.body(body).vector(4, 0) + 2;
+    let (run, states) = path(model, &Options::default());
+    let deflection = states.last().unwrap().q[middle].abs();
+    println!("buckled at {:?} to {deflection:.3}: {:?}", run.jumps, run.counts);
+    // The inextensible elastica: K(k) = pi / 2 sqrt(P / P_c), w = L k / K; k = 0.3058 at P / P_c = 1.05.
+    let expected = length * 0.3058 / (0.5 * PI * 1.05_f64.sqrt());
+    assert!((deflection / expected - 1.0).abs() < 0.01, "{deflection}, expected {expected}");
+    assert!(matches!(run.jumps[..], [t] if (1.05 * t - 1.0).abs() < 0.01), "{:?}", run.jumps);
 }
