@@ -73,7 +73,7 @@ CANTILEVER = [
     ("clamp = true", "clamp = true\nfix = ['r']", "support.0.fix: give either", ""),
     ('at = "edge:x1"', 'at = "corner:x1y0"', 'load.0.at = "corner:x1y0": allowed are edge:x0, edge:x1', ""),
     ("[0.5, 1.0]", "[1.0, 1.0]", "run.load_factors = [1.0, 1.0]: each must differ from the one before", ""),
-    ("[0.5, 1.0]", '[1.0]\npath = "arc"', 'run.path = "arc": allowed is load', ""),
+    ("[0.5, 1.0]", '[1.0]\npath = "curve"', 'run.path = "curve": allowed are load, arc', ""),
     (
         "[[probe]]",
         '[[load]]\nkind = "gravity"\nacceleration = [0, 0, 1]\n[[probe]]',

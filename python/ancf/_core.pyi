@@ -121,6 +121,8 @@ class Run:
     @property
     def reached(self) -> float: ...  # s, or load factor
     @property
+    def jumps(self) -> _FloatArray: ...  # load factors at which a structure in statics jumped
+    @property
     def t(self) -> _FloatArray: ...  # (states,)
     @property
     def q(self) -> _FloatArray: ...  # (states, n)
@@ -153,11 +155,13 @@ def solve_static(
     model: Model,
     *,
     load_factors: Sequence[float],
+    path: str,  # "load" | "arc"
     newton: str,  # "mip" | "plain"
     tolerance: float,  # of the correction, relative to the size of the model
     max_iterations: int,
     first_step: float | None,  # load factor; None: up to the first load factor
     min_step: float,
+    max_steps: int,  # of a path by arc length
     threads: int | None,
     progress: Callable[[float], Any] | None,  # called at most every 50 ms with the load factor reached
 ) -> Run: ...

@@ -24,6 +24,8 @@ def describe(title: str, result: Result) -> str:
         Several lines.
     """
     place = f"{result.run.parameter} = {result.reached:.6g} {result.run.unit}".rstrip()
+    if len(result.jumps):
+        place += f", jumped at {', '.join(f'{t:.4g}' for t in result.jumps)}"
     counts = ", ".join(f"{number} {name}" for name, number in result.counts.items())
     last = _last_state(result) if len(result.t) else []
     return "\n".join(

@@ -78,6 +78,8 @@ class Result:
         Why it did not end well and what to try; empty if it did.
     reached : float
         The last time, s, or load factor.
+    jumps : ndarray, shape (jumps,)
+        Load factors at which a structure in statics has lost its equilibrium and jumped to another.
     t : ndarray, shape (states,)
         Times, s, or load factors; the first is 0, the state at the start.
     q, v, a : ndarray, shape (states, n)
@@ -103,6 +105,7 @@ class Result:
     reason: str
     advice: str
     reached: float
+    jumps: FloatArray
     t: FloatArray = field(repr=False)
     q: FloatArray = field(repr=False)
     v: FloatArray = field(repr=False)
@@ -130,6 +133,7 @@ class Result:
             reason=core.reason,
             advice=core.advice,
             reached=core.reached,
+            jumps=core.jumps,
             t=core.t,
             q=core.q,
             v=core.v,

@@ -59,9 +59,12 @@ class Static(_Run):
     ----------
     load_factors : sequence of float, default (1.0,)
         Where to record a state, in the order in which they are reached; each differs from the one before, the first
-        from 0.
-    path : {"load"}, default "load"
-        How the path is followed: by the load factor.
+        from 0. By arc length every step is recorded: the first load factor gives the direction, and the length of the
+        longest step by what the tangent at the start does in it; the path ends at the last.
+    path : {"load", "arc"}, default "load"
+        How the path is followed. By the load factor, over stable equilibria only: where one is lost, the structure
+        jumps to the next, see `Result.jumps`. Or by arc length, through limit points and turning points, stable or not;
+        the load factor may decrease.
     newton : {"mip", "plain"}, default "mip"
         The iteration: mixed integration points, Magisano, Leonetti and Garcea (2017), or plain.
     tolerance : float, default 1e-8
@@ -72,6 +75,8 @@ class Static(_Run):
         Of the load factor; the first load factor if left out.
     min_step : float, default 1e-5
         The run fails if a smaller step would be needed.
+    max_steps : int, default 1000
+        By arc length the path ends after so many steps, if it has not reached the last load factor.
 
     Raises
     ------
@@ -85,9 +90,10 @@ class Static(_Run):
     history: ClassVar[History] = "ramp"
 
     load_factors: Sequence[float] = (1.0,)
-    path: Literal["load"] = "load"
+    path: Literal["load", "arc"] = "load"
     first_step: Positive | None = None
     min_step: Positive = 1e-5
+    max_steps: PositiveInt = 1000
 
     @model_validator(mode="after")
     def _change(self) -> Self:
@@ -115,11 +121,13 @@ class Static(_Run):
         return _core.solve_static(
             core,
             load_factors=self.load_factors,
+            path=self.path,
             newton=self.newton,
             tolerance=self.tolerance,
             max_iterations=self.max_iterations,
             first_step=self.first_step,
             min_step=self.min_step,
+            max_steps=self.max_steps,
             threads=threads,
             progress=progress,
         )

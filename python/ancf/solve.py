@@ -24,11 +24,13 @@ def solve_static(
     model: Model,
     *,
     load_factors: Sequence[float] = (1.0,),
+    path: Literal["load", "arc"] = "load",
     newton: Literal["mip", "plain"] = "mip",
     tolerance: float = 1e-8,
     max_iterations: int = 30,
     first_step: float | None = None,
     min_step: float = 1e-5,
+    max_steps: int = 1000,
     threads: int | None = None,
     progress: Progress = None,
     throw: bool = True,
@@ -39,7 +41,7 @@ def solve_static(
     ----------
     model : Model
         What to load.
-    load_factors, newton, tolerance, max_iterations, first_step, min_step : optional
+    load_factors, path, newton, tolerance, max_iterations, first_step, min_step, max_steps : optional
         As in `Static`.
     threads : int, optional
         How many; all if left out. The result does not depend on it.
@@ -51,7 +53,7 @@ def solve_static(
     Returns
     -------
     Result
-        The state without loads, then one for each load factor.
+        The state without loads, then one for each load factor, or by arc length for each step.
 
     Raises
     ------
@@ -64,11 +66,13 @@ def solve_static(
     """
     run = Static(
         load_factors=load_factors,
+        path=path,
         newton=newton,
         tolerance=tolerance,
         max_iterations=max_iterations,
         first_step=first_step,
         min_step=min_step,
+        max_steps=max_steps,
     )
     return solve(model, run, threads=threads, progress=progress, throw=throw)
 

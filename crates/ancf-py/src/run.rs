@@ -87,6 +87,11 @@ impl Run {
     }
 
     #[getter]
+    fn jumps<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        vector(py, self.end.as_ref().map(|end| end.jumps.clone()).unwrap_or_default())
+    }
+
+    #[getter]
     fn t<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.series(py, |state| state.t)
     }

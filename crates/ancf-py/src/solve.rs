@@ -12,6 +12,7 @@ use ancf_core::dynamics::{self, Checkpoint, Method, Steps, Tolerances};
 use ancf_core::linear::LinearError;
 use ancf_core::nonlinear::{Options as NewtonOptions, Variant};
 use ancf_core::observe::{Observer, State};
+use ancf_core::statics::Control;
 use ancf_core::{InputError, model, report, statics};
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
@@ -230,22 +231,29 @@ fn newton_options(
 
 /// Finds equilibria along a load path.
 #[pyfunction]
-#[pyo3(signature = (model, *, load_factors, newton, tolerance, max_iterations, first_step, min_step, threads, progress))]
+#[pyo3(signature = (model, *, load_factors, path, newton, tolerance, max_iterations, first_step, min_step, max_steps, threads, progress))]
 #[expect(clippy::too_many_arguments, reason = "keyword arguments in Python")]
 pub fn solve_static(
     py: Python<'_>,
     model: &Model,
     load_factors: Vec<f64>,
+    path: &str,
     newton: &str,
     tolerance: f64,
     max_iterations: usize,
     first_step: Option<f64>,
     min_step: f64,
+    max_steps: usize,
     threads: Option<usize>,
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Run> {
     let newton = newton_options(py, newton, tolerance, max_iterations, false)?;
-    let options = statics::Options { load_factors, newton, first_step, min_step, ..statics::Options::default() };
+    let control = match path {
+        "load" => Control::Load,
+        "arc" => Control::Arc,
+        _ => return Err(input_error(py, &InputError::new("path", format!("\"{path}\""), "load, arc"))),
+    };
+    let options = statics::Options { control, load_factors, newton, first_step, min_step, max_steps };
     run(py, model, threads, progress, Vec::new(), None, move |system, observer| {
         statics::solve(system, &options, observer)
     })
