@@ -1,8 +1,9 @@
 """A hinged cylindrical roof under a central force snaps through.
 
-K. Y. Sze, X. H. Liu, S. H. Lo, Popular benchmark problems for geometric nonlinear analysis of shells, Finite Elem. Anal.
-Des. 40 (2004) 1551-1569: R 2540, length 508, half angle 0.1 rad, thickness 12.7, E 3102.75, nu 0.3, force 3000 (mm, N);
-straight edges hinged, curved edges free. A quarter of it, 8 x 8 elements. The table is of shear-flexible elements.
+K. Y. Sze, X. H. Liu, S. H. Lo, Popular benchmark problems for geometric nonlinear analysis of shells, Finite Elem.
+Anal. Des. 40 (2004) 1551-1569: R 2540, length 508, half angle 0.1 rad, thickness 12.7, E 3102.75, nu 0.3, force 3000
+(mm, N); straight edges hinged, curved edges free. A quarter of it, 8 x 8 elements. The table is of shear-flexible ones:
+on the last, steep branch a thin shell deflects 0.3 % less, with 16 x 16 elements as well.
 """
 
 from typing import Any
@@ -63,8 +64,10 @@ def test_arc_length_follows_the_whole_path() -> None:
     w = deflection(result)
     assert np.all(np.diff(w) > 0)
     # The load at the deflections of the table, to 1 % of its largest.
-    load = np.interp(TABLE[:, 1], w, result.t)
-    np.testing.assert_allclose(load, TABLE[:, 0], rtol=0, atol=0.01)
+    load = np.interp(TABLE[:-1, 1], w, result.t)
+    np.testing.assert_allclose(load, TABLE[:-1, 0], rtol=0, atol=0.01)
+    last = result.t[-20:]
+    np.testing.assert_allclose(np.interp(TABLE[-1, 0], last, w[-20:]), TABLE[-1, 1], rtol=0.005)
     # Limit points are states; between them the equilibria are unstable, with one negative eigenvalue.
     upper, lower = np.argmax(result.t[w < 15]), np.flatnonzero(w > 15)[0] + np.argmin(result.t[w > 15])
     np.testing.assert_allclose(result.t[[upper, lower]], [0.7421, 0.1729], rtol=0.01)

@@ -16,6 +16,7 @@ import numpy as np
 
 from ancf.errors import InputError, Mistake
 from ancf.result import Result
+from ancf.run import Static
 
 SUMMARY = "summary.json"
 STATES = "result.npz"
@@ -110,7 +111,7 @@ def summarize(title: str, result: Result) -> dict[str, Any]:
         Of plain Python values.
     """
     energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
-    return {
+    summary: dict[str, Any] = {
         "title": title,
         "status": result.status,
         "reached": _plain(result.reached),
@@ -122,6 +123,9 @@ def summarize(title: str, result: Result) -> dict[str, Any]:
         "probes": {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()},
         "energy": _plain(energy),
     }
+    if isinstance(result.run, Static):
+        summary["jumps"] = _plain(result.jumps)
+    return summary
 
 
 def _plain(value: Any) -> Any:

@@ -11,8 +11,8 @@
 //! weights, several elements side by side in SIMD registers (`lanes`).
 //!
 //! [`linear`] factorises the tangent. [`nonlinear`] solves `c M (q - q*) + k (Q_k - Q_e) + p = 0` by Newton's method;
-//! [`statics`] puts it into steps along a load path, [`dynamics`] into time steps. Both tell an [`observe::Observer`] what they
-//! reach and end with a [`report::Run`]. [`evaluate`] gives positions and strains at material points.
+//! [`statics`] puts it into steps along a load path, [`dynamics`] into time steps. Both tell an [`observe::Observer`] what
+//! they reach and end with a [`report::Run`]. [`evaluate`] gives positions and strains at material points.
 //!
 //! # Example
 //!

@@ -82,14 +82,13 @@ fn jump(
     let mut damped = System::new(Arc::new(model)).map_err(|e| Failure::from_linear(e, 0, |_| String::new()))?;
     let mut newton = Newton::new(&damped, options.newton);
 
-    let zeros = vec![0.0; q.len()];
     let displacement = difference(&q, damped.model().reference());
     let mut inertia = vec![0.0; q.len()];
     damped.add_mass_times(&displacement, &mut inertia);
     // Rayleigh's quotient of the displacement so far.
     let scale = 2.0 * path.at.energy / product(&displacement, &inertia);
     let mut mass = scale;
-    let mut energy = damped.internal_force(&q, &mut zeros.clone()).total();
+    let mut energy = damped.internal_force(&q, &mut vec![0.0; q.len()]).total();
     let mut found = None;
     for _ in 0..MOST_MOTION {
         let mut next = q.clone();

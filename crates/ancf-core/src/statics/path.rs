@@ -57,7 +57,8 @@ pub(super) struct Path<'a> {
 impl<'a> Path<'a> {
     /// A path that begins at rest, all loads held back.
     pub fn new(system: &'a mut System, options: NewtonOptions) -> Self {
-        let newton = Newton::new(system, options);
+        // Steps begin with the tangent of the last solution, which is factorised anyway.
+        let newton = Newton::new(system, NewtonOptions { reuse: false, ..options });
         let q = system.model().reference().to_vec();
         let mut initial = vec![0.0; q.len()];
         system.external_force(&q, 0.0, &mut initial);
