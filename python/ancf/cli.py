@@ -45,6 +45,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _info() if options.command == "info" else _run(options)
     except InputError as error:
         return _complain(error, WRONG_INPUT)
+    except RecursionError:
+        return _complain("the scene is nested too deeply", WRONG_INPUT)
     except OSError as error:
         return _complain(error, CANNOT_WRITE)
     except KeyboardInterrupt:
@@ -70,10 +72,9 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _positive(text: str) -> int:
-    number = int(text)
-    if number < 1:
-        raise argparse.ArgumentTypeError(f"{number} is not greater than 0")
-    return number
+    if not text.isdecimal() or not 1 <= int(text) <= 1024:
+        raise argparse.ArgumentTypeError(f"{text} is not a whole number from 1 to 1024")
+    return int(text)
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -88,7 +89,7 @@ def _run(options: argparse.Namespace) -> int:
             checkpoint=options.checkpoint or options.resume,
             resume=options.resume,
             threads=options.threads,
-            progress=not options.quiet,
+            progress=not options.quiet and sys.stderr is not None,
             throw=False,
         )
     except InputError:
@@ -120,5 +121,6 @@ def _info() -> int:
 
 
 def _complain(message: object, status: int) -> int:
-    print(f"ancf: {message}", file=sys.stderr)
+    if sys.stderr is not None:
+        print(f"ancf: {message}", file=sys.stderr)
     return status

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
@@ -37,6 +38,11 @@ def animate(result: Result, path: str | os.PathLike[str], title: str = "") -> No
     InputError
         If the file has another ending, or ffmpeg is needed and missing.
     """
+    with mpl.rc_context({"text.parse_math": False}):
+        _animate(result, path, title)
+
+
+def _animate(result: Result, path: str | os.PathLike[str], title: str) -> None:
     writer = check_film(path)
     figure = Figure(figsize=(7, 6), dpi=_DPI, layout="constrained")
     stage = Stage(figure, result, _FACETS)

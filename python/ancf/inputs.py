@@ -146,6 +146,7 @@ def _count(number: int) -> BeforeValidator:
 Positive = Annotated[float, Field(gt=0)]
 PositiveInt = Annotated[int, Field(gt=0)]
 Pair = Annotated[tuple[Positive, Positive], _count(2)]
-PairOfInts = Annotated[tuple[PositiveInt, PositiveInt], _count(2)]
+Divisions = Annotated[PositiveInt, Field(le=2**27)]
+PairOfInts = Annotated[tuple[Divisions, Divisions], _count(2)]
 Vector = Annotated[tuple[float, float, float], _count(3)]
 Point = Annotated[tuple[float, float], _count(2)]

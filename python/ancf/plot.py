@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
@@ -29,6 +30,11 @@ def plot(result: Result, title: str = "") -> Figure:
     matplotlib.figure.Figure
         To be saved with its ``savefig``.
     """
+    with mpl.rc_context({"text.parse_math": False}):
+        return _plot(result, title)
+
+
+def _plot(result: Result, title: str) -> Figure:
     probes = result.model.probes
     figure = Figure(figsize=(12.5 if probes else 8, 6.5), dpi=130, layout="constrained")
     figure.suptitle(heading(result, -1, title), fontsize="x-large")

@@ -19,6 +19,7 @@ from ancf.loads import Gravity, History
 from ancf.model import Model
 
 _INTERVALS = 100
+_MOST_OUTPUTS = 1_000_000
 
 Method: TypeAlias = Literal[
     "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk"
@@ -34,7 +35,7 @@ class _Run(Input, ABC):
 
     newton: Literal["mip", "plain"] = "mip"
     tolerance: Positive = 1e-8
-    max_iterations: PositiveInt = 30
+    max_iterations: Annotated[PositiveInt, Field(le=1_000_000)] = 30
 
     @property
     @abstractmethod
@@ -222,6 +223,8 @@ class Dynamic(_Run):
             mistakes.add(("min_step",), "must not be greater than max_step", self.min_step)
         if self.outputs is not None and self.every is not None:
             mistakes.add(("every",), "give either every or outputs", self.every)
+        if self.every is not None and self.until / self.every > _MOST_OUTPUTS:
+            mistakes.add(("every",), f"must be at least until / {_MOST_OUTPUTS}", self.every)
         if self.outputs is not None:
             increase = all(before < after for before, after in pairwise(self.outputs))
             if not increase or not all(0 <= time <= self.until for time in self.outputs):

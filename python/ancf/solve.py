@@ -176,8 +176,8 @@ def solve(
     start: _Start | None = None,
 ) -> Result:
     """Run a model in any way; what `solve_static`, `simulate` and scenes have in common."""
-    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or threads < 1):
-        raise InputError(Mistake(("threads",), "must be a whole number greater than 0", show(threads)))
+    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or not 1 <= threads <= 1024):
+        raise InputError(Mistake(("threads",), "must be a whole number from 1 to 1024", show(threads)))
     run.check(model)
     core = model.assemble(run.history)
     with meter(progress, run.end, run.unit) as call, from_core():

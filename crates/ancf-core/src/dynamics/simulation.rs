@@ -98,6 +98,10 @@ impl<'a> Simulation<'a> {
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
         let end = self.steps(observer);
         observer.checkpoint(&|states| self.checkpoint().to_bytes(states), true);
+        if end.is_err() && !self.options.outputs.contains(&self.now.t) {
+            // The last good state is not lost; a run that is resumed goes on from the checkpoint without it.
+            observer.state(self.now.output(&mut self.equations));
+        }
         end
     }
 

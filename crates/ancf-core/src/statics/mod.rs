@@ -90,7 +90,7 @@ pub fn solve(system: &mut System, options: &Options, observer: &mut dyn Observer
     options.validate()?;
     let start = Instant::now();
     let mut path = Path::new(system, options.newton);
-    let end = path.follow(options, observer);
+    let end = path.follow(options, observer).inspect_err(|_| path.output_last(observer));
     let (outcome, reached, counts) = (Outcome::from_end(end), path.at.load.t, path.counts());
     let jumps = path.jumps;
     let seconds = Seconds::new(system, start.elapsed());

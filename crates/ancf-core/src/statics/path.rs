@@ -49,6 +49,8 @@ pub(super) struct Path<'a> {
     pub jumps: Vec<f64>,
     pub steps: usize,
     pub rejected: usize,
+    /// The load factor of the point that the observer was given last.
+    pub told: Option<f64>,
     /// Iterations and factorisations of jumps.
     pub iterations: usize,
     pub factorizations: usize,
@@ -75,6 +77,7 @@ impl<'a> Path<'a> {
             rejected: 0,
             iterations: 0,
             factorizations: 0,
+            told: None,
         }
     }
 
@@ -127,8 +130,17 @@ impl<'a> Path<'a> {
         Counts { steps, rejected, unsolved: rejected, iterations, factorizations, ..Counts::default() }
     }
 
+    /// Gives the last point to the observer, unless it has it.
+    pub fn output_last(&mut self, observer: &mut dyn Observer) {
+        let Load { t, held } = self.at.load;
+        if held == 0.0 && self.told != Some(t) {
+            self.output(observer);
+        }
+    }
+
     /// Gives the last point to the observer.
     pub fn output(&mut self, observer: &mut dyn Observer) {
+        self.told = Some(self.at.load.t);
         let Point { load, ref q, negative_pivots, .. } = self.at;
         let zeros = vec![0.0; q.len()];
         let strain = self.system.internal_force(q, &mut zeros.clone());
