@@ -115,7 +115,6 @@ def summarize(title: str, result: Result) -> dict[str, Any]:
         "title": title,
         "status": result.status,
         "reached": _plain(result.reached),
-        "jumps": _plain(result.jumps),
         "reason": result.reason,
         "advice": result.advice,
         "counts": _plain(result.counts),
