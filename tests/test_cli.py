@@ -40,7 +40,7 @@ def test_run_writes_summary_and_states(scenes: Path, tmp_path: Path, capsys: pyt
     assert told.err == ""  # no bar unless it is a terminal
     found = summary(folder)
     assert list(found) == [
-        "title", "status", "reached", "jumps", "reason", "advice", "counts", "seconds", "probes", "energy",
+        "title", "status", "reached", "reason", "advice", "counts", "seconds", "probes", "energy",
     ]  # fmt: skip
     assert (found["title"], found["status"], found["reason"]) == ("Small pendulum", "ok", "")
     assert found["reached"] == pytest.approx(0.05)

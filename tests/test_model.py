@@ -5,6 +5,7 @@ import importlib
 import inspect
 import io
 import pkgutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -77,7 +78,7 @@ def test_inputs_are_frozen_and_take_arrays(rubber: ancf.Material) -> None:
 
 
 def test_wrong_runs(pendulum: ancf.Model) -> None:
-    with pytest.raises(ancf.InputError, match="threads = 0: must be a whole number greater than 0"):
+    with pytest.raises(ancf.InputError, match="threads = 0: must be a whole number from 1 to 1024"):
         ancf.simulate(pendulum, until=0.1, step=0.01, threads=0)
     with pytest.raises(ancf.InputError, match="progress = 3: must be"):
         ancf.simulate(pendulum, until=0.1, step=0.01, progress=3)  # type: ignore[arg-type]
@@ -184,3 +185,20 @@ def test_no_load_and_hardly_any_are_solved(rubber: ancf.Material) -> None:
         # P L^3 / (3 E I), to the few per cent that a clamped plate of finite width is stiffer.
         expected = load * 0.2 / (3 * 1e5 * 0.2 * 0.01**3 / 12)
         assert result.probes["tip"].value[-1, 2] == pytest.approx(expected, rel=0.06, abs=1e-18)
+
+
+def test_the_last_good_state_is_kept(pendulum: ancf.Model) -> None:
+    result = ancf.simulate(pendulum, until=1.0, step=0.02, outputs=[0.0, 1.0], max_iterations=3, throw=False)
+    assert result.status == "failed"
+    assert 0 < result.reached < 1
+    assert result.t.tolist() == [0.0, result.reached]
+
+
+def test_titles_are_plain_text(pendulum: ancf.Model, tmp_path: Path) -> None:
+    result = ancf.simulate(pendulum, until=0.01, step=5e-3)
+    result.plot("$a_{$").savefig(tmp_path / "plate.png")
+
+
+def test_too_many_outputs_are_refused(pendulum: ancf.Model) -> None:
+    with pytest.raises(ancf.InputError, match="every = 1e-12: must be at least until / 1000000"):
+        ancf.simulate(pendulum, until=0.01, step=1e-3, every=1e-12)

@@ -74,7 +74,8 @@ class Rectangle(Plate):
         comparison: they converge slowly when bent.
     membrane : {"projected", "full", "lobatto"}, optional
         How the membrane strain of a thin element is sampled: "projected", the default, bends without locking, "full" is
-        the paper's, "lobatto", for "thin36" only, the cheapest.
+        the paper's, "lobatto", for "thin36" only, the cheapest. Where bending in the plane or uneven tension decides,
+        take "full": coarse meshes of "projected" are too soft there.
     curvature : {"paper", "koiter"}, optional
         The measure of curvature of a thin element: "paper", the default, is r_ab . n/abs(n)^3, Dufva and Shabana
         (2005), (32), "koiter" r_ab . n/abs(n).
