@@ -69,7 +69,7 @@ fn a_hinged_plate_falls_as_a_compound_pendulum() {
 #[test]
 fn it_moves_as_a_stiff_plate_does() {
     for case in 0..4 {
-        let stiff = Material::new(1e12, 0.3, 7810.0).unwrap();
+        let stiff = Material::new(1e10, 0.3, 7810.0).unwrap();
         let (mut model, body) = plate(1, SIDE, 0.02, stiff);
         let mut load = |kind| model.add_load(Load { kind, history: History::Constant }).unwrap();
         match case {
@@ -85,12 +85,12 @@ fn it_moves_as_a_stiff_plate_does() {
         if case == 0 || case == 2 {
             hold(&mut model, "corner:x0y0");
         }
-        let [rigid, flexible] = [(Method::Rigid, 1e-7), (Method::Esdirk, 1e-5)]
+        let [rigid, flexible] = [(Method::Rigid, 1e-7), (Method::Rk, 1e-7)]
             .map(|(method, rtol)| end(model.clone(), &options(method, Steps::controlled(rtol), 0.3)));
         let distance = common::distance(&model, &rigid, &flexible);
         let moved =
             common::tip(&model, &rigid).iter().zip([SIDE, SIDE, 0.0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(moved > 0.02 && distance < 5e-4 * moved, "{case}: {distance:e} of {moved}");
+        assert!(moved > 0.02 && distance < 1e-4 * moved, "{case}: {distance:e} of {moved}");
         assert!((rigid.kinetic - rigid.work).abs() < 1e-6 * rigid.kinetic, "{case}");
     }
 }
