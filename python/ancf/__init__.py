@@ -32,6 +32,7 @@ from ancf.loads import Force, Gravity, LineLoad, Moment, Pressure
 from ancf.mapped import Surface
 from ancf.materials import Material
 from ancf.model import Model
+from ancf.plan import Plan, plan
 from ancf.probes import Probe
 from ancf.result import Energy, Record, Result
 from ancf.run import Dynamic, Static
@@ -53,6 +54,7 @@ __all__ = [
     "Mistake",
     "Model",
     "Moment",
+    "Plan",
     "Pressure",
     "Probe",
     "Record",
@@ -68,6 +70,7 @@ __all__ = [
     "Surface",
     "__version__",
     "load_scene",
+    "plan",
     "simulate",
     "solve_static",
 ]
