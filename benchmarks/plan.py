@@ -81,7 +81,7 @@ def statics() -> Iterator[Case]:
     foil = plate((0.5, 0.1), 5e-5, STEEL)
     moment = ancf.Moment(at="edge:x1", per_length=2e-3)
     yield Case(scene("foil rolled", foil, [WALL], [moment], (0.5, 0.05), run), ((32, 6), (48, 12)))
-    yield Case(scene("dome pressed", dome, [end], [ancf.Pressure(pressure=-400.0)], (0.4, 0.8), run), ((24, 24), (32, 32)))
+    yield Case(scene("dome pressed", dome, [end], [ancf.Pressure(pressure=2000.0)], (0.4, 0.8), run), ((24, 24), (32, 32)))
 
 
 def motions() -> Iterator[Case]:
@@ -166,8 +166,8 @@ def chart(case: Case, pilots: Pilots, exact: Values) -> list[tuple[float, float,
             tried.append((pilot.seconds, distance(pilot.values, exact, scale), str(choice)))
 
     steppings = [None] if case.stepping is None else in_time(case, pilots, exact, run)
-    for family, nx, ny in product((*THIN, CONTINUOUS), case.x, case.y):
-        for stepping in steppings:
+    for nx, ny in sorted(product(case.x, case.y), key=lambda mesh: mesh[0] * mesh[1]):
+        for family, stepping in product((*THIN, CONTINUOUS), steppings):
             run(Choice(Rung(family, ((nx, ny),)), stepping))
     return tried
 

@@ -23,7 +23,7 @@ _DOMINANT = 0.4
 """A side is refined if its error is at least this part of the largest."""
 _SMALL_SIDE = 0.05
 """Part of the tolerance below which a side is not refined further."""
-_TRIALS = 6
+_TRIALS = 8
 """Cheaper rungs that are tried on the way down."""
 _WORTH = 0.75
 """Predicted cost of a trial relative to the choice so far."""
@@ -33,6 +33,14 @@ _TRUST = 0.5
 """Part of the error that remains when it is extrapolated."""
 _SHORTER = 5
 """Times that steps are shortened where they cannot be solved."""
+_PATIENCE = 2
+"""Rungs in a row that may be no better than the one before."""
+_LIKELY = 0.2
+"""Chance below which a cheaper rung is not tried."""
+_STALLED = 0.4
+"""Rate of convergence that counts as no better."""
+_AGREED = 0.6
+"""Part of the tolerance up to which another element on the finest mesh may be off."""
 _LARGEST = 20_000
 """Elements of the finest rung."""
 
@@ -143,18 +151,21 @@ class Search:
         """
         rung = _doubled(Rung(family, self.base))
         last: Rung | None = None
+        stalled = 0
         while True:
             if self.climb(rung).ok:
+                before = self.own if last is not None else np.inf
                 self._learn(rung, last)
                 last = rung
+                stalled = stalled + 1 if self.own > before * 2.0**-_STALLED else 0
+                finer = self._refined(rung)
                 if self.own <= BEST * self.tol and self._confirmed(rung):
                     return True
-                finer = self._refined(rung)
             else:
                 if last is not None:
                     return True
                 finer = _doubled(rung)
-            if finer.elements > _LARGEST or self._ahead(finer) > self.pilots.left:
+            if finer.elements > _LARGEST or (self.predict(finer) or 0.0) > self.pilots.left or stalled > _PATIENCE:
                 return last is not None
             rung = finer
 
@@ -211,31 +222,18 @@ class Search:
         self.own = max(self.own - (1 - _TRUST) * removed, _TRUST * self.own)
 
     def _confirmed(self, rung: Rung) -> bool:
-        """Check the estimate with another element on a coarser mesh; if it is too far off, trust the estimate less."""
-        coarser = replace(rung, divisions=tuple((max(x // 2, 1), max(y // 2, 1)) for x, y in rung.divisions))
-        scale = scales(self.exact)
-        errors = [
-            distance(pilot.values, self.exact, scale)
-            for family in self.families
-            if family != rung.family
-            for pilot in [self.run(replace(coarser, family=family), 1.5 * self._seconds(coarser))]
-            if pilot.ok
-        ]
-        own = distance(self.values(coarser) or self.exact, self.exact, scale)
-        # Some other element should be about as good there.
-        if errors and min(errors) > max(3 * own, self.tol):
-            self.own = max(self.own, 0.2 * min(errors))
+        """Check the estimate with another element on the same mesh; if that is too far off, half of it may be missing."""
+        order = sorted(self.families, key=lambda family: family.element == rung.family.element)
+        for family in order:
+            if family == rung.family:
+                continue
+            pilot = self.run(replace(rung, family=family), 6 * self._seconds(rung))
+            if pilot.ok:
+                other = distance(pilot.values, self.exact, scales(self.exact))
+                if other > max(_AGREED * self.tol, 3 * self.own):
+                    self.own = max(self.own, other / 2)
+                break
         return self.own <= BEST * self.tol
-
-    def _ahead(self, rung: Rung) -> float:
-        """Return the seconds that this rung and all others to the tolerance should take, at the rates observed."""
-        seconds = self.predict(rung) or 0.0
-        rates = [side.rate for side in self.sides.values() if side.rate is not None]
-        if not rates or not np.isfinite(self.own):
-            return seconds
-        levels = np.log2(self.own / (BEST * self.tol)) / min(max(min(rates), RATES[0]), RATES[1])
-        # Each level has about four times the elements of the one before.
-        return float(seconds * 4.0 ** max(np.ceil(levels) - 1.0, 0.0))
 
     def _seconds(self, rung: Rung) -> float:
         pilot = self.pilots.known(self.choice(rung))
@@ -282,19 +280,25 @@ class Search:
         return min(fits, key=lambda pilot: pilot.seconds, default=None)
 
     def _trial(self, limit: float) -> Rung | None:
-        """Return the cheapest rung that is predicted to be good enough and was not run yet."""
+        """Return the rung that was not run yet and promises the largest saving for its cost."""
         found: tuple[float, Rung] | None = None
+        done = [pilot for pilot in self.pilots.done if pilot.ok]
         tried = {pilot.choice.rung for pilot in self.pilots.done}
+        errors = self.observed()
+        poor = [pilot.choice.rung for pilot in done if errors[pilot.choice] > ACCEPT * self.tol]
         for family in self.families:
             guess = self._guess(family)
             for rung in self._below(family):
-                if rung in tried or guess(rung) + self.own > ACCEPT * self.tol:
+                # A rung is not better than a finer one of its family.
+                if rung in tried or any(_within(rung, other) for other in poor):
                     continue
                 cost = self.predict(rung)
                 if cost is None or cost > _WORTH * limit or cost > self.pilots.left:
                     continue
-                if found is None or cost < found[0]:
-                    found = cost, rung
+                likely = 1.0 / (1.0 + ((guess(rung) + self.own) / (ACCEPT * self.tol)) ** 4)
+                saving = likely * (1.0 - cost / limit if np.isfinite(limit) else 1.0)
+                if likely > _LIKELY and (found is None or saving > found[0]):
+                    found = saving, rung
         return found[1] if found else None
 
     def _below(self, family: Family) -> Iterator[Rung]:
@@ -326,8 +330,16 @@ class Search:
             # Nothing is known of it: as good as the one that was refined.
             return self._guess(self.best.family) if family != self.best.family else _Guess(rates, {})
         matrix = np.array(rows)
-        weights = np.linalg.lstsq(matrix[:, :-1], matrix[:, -1], rcond=1e-6)[0]
-        return _Guess(rates, dict(zip(sides, np.maximum(weights, 0.0).tolist(), strict=True)))
+        weights = np.zeros(len(sides))
+        used = np.full(len(sides), True)
+        # Least squares with weights that are not negative: those that would be are left out.
+        while used.any():
+            weights[:] = 0.0
+            weights[used] = np.linalg.lstsq(matrix[:, :-1][:, used], matrix[:, -1], rcond=1e-9)[0]
+            if (weights >= 0.0).all():
+                break
+            used &= weights > 0.0
+        return _Guess(rates, dict(zip(sides, weights.tolist(), strict=True)))
 
 
 @dataclass(frozen=True)
@@ -342,6 +354,11 @@ class _Guess:
 def _power(rung: Rung, at: tuple[int, int], rates: dict[tuple[int, int], float]) -> float:
     body, axis = at
     return float(rung.divisions[body][axis]) ** -rates.get(at, 2.0)
+
+
+def _within(rung: Rung, other: Rung) -> bool:
+    """Tell whether a rung has no more elements along any side than another of its family."""
+    return rung.family == other.family and all(_count(rung, side) <= _count(other, side) for side in rung.sides())
 
 
 def _count(rung: Rung, side: tuple[int, int]) -> int:
