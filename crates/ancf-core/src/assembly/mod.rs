@@ -168,10 +168,9 @@ impl System {
                 }
                 LoadKind::Moment { body, edge, per_length } => {
                     let block = body.index();
-                    let grid = model.body(body).grid();
-                    let follower =
-                        Follower::moment(block, self.blocks[block].as_ref(), grid, edge, per_length, history);
-                    self.followers.push(follower);
+                    let (grid, element) = (model.body(body).grid(), model.body(body).plate().element);
+                    let elements = self.blocks[block].as_ref();
+                    self.followers.push(Follower::moment(block, element, elements, grid, edge, per_length, history));
                     continue;
                 }
                 LoadKind::Pressure { body, pressure } => {
