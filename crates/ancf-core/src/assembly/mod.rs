@@ -398,6 +398,15 @@ impl System {
         &self.tangent_at
     }
 
+    /// Adds the skew half of a tangent, that of loads which follow the body, times `x` to `y`; `at` is its
+    /// [`tangent_at`](Self::tangent_at).
+    pub(crate) fn add_skew_times(&self, (q, factors): &(Vec<f64>, Vec<f64>), x: &[f64], y: &mut [f64]) {
+        for (load, factor) in self.followers.iter().zip(factors) {
+            let elements = self.blocks[load.block].as_ref();
+            load.add_skew_times(elements, self.model.reference(), q, -factor, x, y);
+        }
+    }
+
     /// Factorises a tangent that was assembled earlier.
     ///
     /// # Errors
