@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Self, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Annotated, Any, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -63,7 +64,7 @@ class Model(Input):
     def _not_empty(cls, bodies: Mapping[str, Plate]) -> Mapping[str, Plate]:
         if not bodies:
             raise ValueError("must hold at least one body")
-        return bodies
+        return MappingProxyType(dict(bodies))
 
     @field_validator("supports", "loads", "probes")
     @classmethod
@@ -97,6 +98,20 @@ class Model(Input):
         mistakes.check()
         self._assembled = self.assemble("constant")
         return self
+
+    def __eq__(self, other: object) -> bool:
+        # The compiled model follows from the rest.
+        return isinstance(other, Model) and dict(self) == dict(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Callable[[type[Self], dict[str, Any]], Self], tuple[type[Self], dict[str, Any]]]:
+        # The compiled model is made anew in the copy.
+        return _make, (type(self), dict(self) | {"bodies": dict(self.bodies)})
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        make, arguments = self.__reduce__()
+        return make(*arguments)
 
     def _assemble_bodies(self) -> _core.Model:
         core = _core.Model()
@@ -194,6 +209,10 @@ class Model(Input):
             return self._assembled.evaluate(body, places, quantity, q, v)
         except _core.InputError as error:
             raise InputError(Mistake(("points",), f"allowed is {error.allowed}", error.value)) from None
+
+
+def _make(cls: type[_Item], values: dict[str, Any]) -> _Item:
+    return cls(**values)
 
 
 def _check_inside(core: _core.Model, body: str, at: tuple[float, float]) -> None:
