@@ -3,6 +3,7 @@
 //!
 //! `cargo run --release --package ancf-core --example memory`
 
+use std::error::Error;
 use std::sync::Arc;
 
 use ancf_core::assembly::System;
@@ -13,13 +14,13 @@ use ancf_core::{InputError, Material};
 
 const DIVISIONS: usize = 64;
 
-fn main() -> Result<(), InputError> {
+fn main() -> Result<(), Box<dyn Error>> {
     print!("{}", table()?);
     Ok(())
 }
 
 /// The table, in Markdown.
-pub fn table() -> Result<String, InputError> {
+pub fn table() -> Result<String, Box<dyn Error>> {
     let shapes = [
         ("rectangle", Surface::rectangle([1.0, 1.0])?),
         ("cylinder", Surface::cylinder(1.0, [0.0, 1.0], [0.0, 1.0])?),
@@ -37,7 +38,7 @@ pub fn table() -> Result<String, InputError> {
 }
 
 /// What an element takes, rounded up to whole bytes.
-fn bytes(element: Kind, surface: &Surface) -> Result<String, InputError> {
+fn bytes(element: Kind, surface: &Surface) -> Result<String, Box<dyn Error>> {
     let material = Material::new(2.1e11, 0.3, 7800.0)?;
     let plate = Plate { material, thickness: 0.01, element, membrane: None, curvature: None };
     let mut model = Model::new();
