@@ -7,7 +7,7 @@ use crate::strain::CurvatureLaw;
 
 use super::block::{Block, ElementBlock};
 use super::constants::Section;
-use super::full48::{full48a, full48b, hermite_middle, quartic_middle};
+use super::full48::{director, full48a, full48b, hermite_middle, quartic_middle};
 use super::tables::{Tables, derivative};
 use super::thin::{Membrane, thin36, thin48};
 
@@ -69,6 +69,12 @@ impl Kind {
             Self::Full48a => derivative(&quartic_middle(sides), sides, orders, at).to_vec(),
             Self::Full48b => derivative(&hermite_middle(sides), sides, orders, at).to_vec(),
         }
+    }
+
+    /// The derivatives of the shape functions of a solid's vector through the thickness, as
+    /// [`shape_functions`](Self::shape_functions).
+    pub(crate) fn director_functions(self, sides: [f64; 2], orders: [usize; 2], at: [f64; 2]) -> Vec<f64> {
+        derivative(&director(), sides, orders, at).to_vec()
     }
 
     /// The variant of the element, the default where nothing is given.
