@@ -12,7 +12,7 @@ from ancf import _core
 from ancf.errors import InputError, Interrupted, Mistake, SolveError, from_core, show
 from ancf.model import Model
 from ancf.progress import Progress, meter
-from ancf.result import Status
+from ancf.result import Result, Status
 from ancf.run import Modes, Static
 from ancf.solve import check_threads, solve
 
@@ -69,6 +69,11 @@ class ModalResult:
     seconds: dict[str, float]
 
     @property
+    def states(self) -> int:
+        """How many modes there are."""
+        return len(self.frequency)
+
+    @property
     def unstable(self) -> int:
         """How many of the modes grow: 0 about a stable equilibrium."""
         return int(np.count_nonzero(self.eigenvalue < 0))
@@ -120,10 +125,12 @@ class ModalResult:
         places = self._nodes(self.q)
         size = np.linalg.norm(np.ptp(places, axis=0))
         scale = _AMPLITUDE * size / np.linalg.norm(self._nodes(self.shapes[mode]), axis=-1).max()
-        return self.q + scale * np.multiply.outer(np.sin(phases), self.shapes[mode])
+        return self.q + scale * np.sin(np.asarray(phases, dtype=np.float64))[:, None] * self.shapes[mode]
 
     def _nodes(self, q: FloatArray) -> FloatArray:
-        parts = [self.model.evaluate(name, self.model.nodes(name), "position", q[None])[0] for name in self.model.bodies]
+        parts = [
+            self.model.evaluate(name, self.model.nodes(name), "position", q[None])[0] for name in self.model.bodies
+        ]
         return np.concatenate(parts)
 
     def plot(self, title: str = "", count: int = 6) -> Figure:
@@ -211,8 +218,8 @@ def modes(
     count, load_factor : optional
         As in `Modes`.
     q : array_like, shape (n,), optional
-        The state about which it oscillates, as one of `Result.q`; the equilibrium at `load_factor` if left out. Where it
-        is no equilibrium the modes are those of its tangent.
+        The state about which it oscillates, as one of `Result.q`; the equilibrium at `load_factor` if left out. Where
+        it is no equilibrium the modes are those of its tangent.
     threads : int, optional
         How many; all if left out. The result does not depend on it.
     progress : bool or callable, optional
@@ -262,16 +269,24 @@ def find_modes(
     check_threads(threads)
     run.check(model)
     core = model.assemble(run.history)
-    if q is None:
-        state, counts, seconds = _equilibrium(model, run, core, threads, progress, throw)
-    else:
-        state, counts, seconds = _check_state(model, q), {}, {}
-    with meter(progress, run.count, "modes") as call, from_core():
+    state = model.nodal_coordinates() if q is None else _check_state(model, q)
+    before = None
+    if q is None and run.load_factor != 0:
+        before = _load(model, run, threads, progress, throw)
+        if before.status == "failed":
+            return _without_modes(run, before)
+        state = before.q[-1]
+    with meter(progress, run.count, run.unit) as call, from_core():
         outcome, eigenvalue, shapes = _core.modes(
             core, count=run.count, q=state, load_factor=run.load_factor, threads=threads, progress=call
         )
         if call and outcome.exception is None:
             call(outcome.reached)
+    counts, seconds = outcome.counts, outcome.seconds
+    if before is not None:
+        for name in ("steps", "rejected", "unsolved", "iterations", "factorizations"):
+            counts[name] += before.counts[name]
+        seconds = {name: number + before.seconds[name] for name, number in seconds.items()}
     result = ModalResult(
         model=model,
         run=run,
@@ -282,9 +297,8 @@ def find_modes(
         frequency=np.sign(eigenvalue) * np.sqrt(np.abs(eigenvalue)) / (2 * np.pi),
         eigenvalue=eigenvalue,
         shapes=shapes,
-        counts={name: number + counts.get(name, 0) for name, number in outcome.counts.items()}
-        | {name: outcome.counts[name] for name in ("elements", "dofs")},
-        seconds={name: number + seconds.get(name, 0.0) for name, number in outcome.seconds.items()},
+        counts=counts,
+        seconds=seconds,
     )
     if outcome.exception is not None:
         if isinstance(outcome.exception, KeyboardInterrupt):
@@ -293,3 +307,37 @@ def find_modes(
     if throw and result.status == "failed":
         raise SolveError(f"the run failed: {result.reason}. Try: {result.advice}", result)
     return result
+
+
+def _load(model: Model, run: Modes, threads: int | None, progress: Progress, throw: bool) -> Result:
+    """Find the equilibrium about which the model is to oscillate."""
+    statics = Static(load_factors=(run.load_factor,))
+    try:
+        return solve(model, statics, threads=threads, progress=progress, throw=throw)
+    except Interrupted as stopped:
+        raise Interrupted(str(stopped), _without_modes(run, cast(Result, stopped.result))) from stopped
+
+
+def _without_modes(run: Modes, before: Result) -> ModalResult:
+    """Return what is left when statics does not reach the state about which the model is to oscillate."""
+    return ModalResult(
+        model=before.model,
+        run=run,
+        status=before.status,
+        reason=f"no equilibrium beyond load factor {before.reached:.6g}: {before.reason}",
+        advice=before.advice,
+        q=before.q[-1] if len(before.q) else before.model.nodal_coordinates(),
+        frequency=np.empty(0),
+        eigenvalue=np.empty(0),
+        shapes=np.empty((0, before.q.shape[1])),
+        counts=before.counts,
+        seconds=before.seconds,
+    )
+
+
+def _check_state(model: Model, q: ArrayLike) -> FloatArray:
+    values = np.ascontiguousarray(q, dtype=np.float64)
+    shape = model.nodal_coordinates().shape
+    if values.shape != shape or not np.isfinite(values).all():
+        raise InputError(Mistake(("q",), f"must be finite and have the shape {show(shape)}", show(values.shape)))
+    return values
