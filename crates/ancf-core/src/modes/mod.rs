@@ -276,7 +276,7 @@ impl<'a> Search<'a> {
     fn check_potential(&self, modes: &[Mode]) -> Result<(), Failure> {
         for mode in modes {
             let mut force = vec![0.0; mode.shape.len()];
-            self.system.add_skew_times(&self.at, &mode.shape, &mut force);
+            self.system.subtract_skew_times(&self.at, &mode.shape, &mut force);
             for other in modes {
                 let coupling: f64 = other.shape.iter().zip(&force).map(|(x, f)| x * f).sum();
                 let scale = self.shift + mode.eigenvalue.abs().max(other.eigenvalue.abs());
