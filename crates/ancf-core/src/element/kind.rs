@@ -7,7 +7,7 @@ use crate::strain::CurvatureLaw;
 
 use super::block::{Block, ElementBlock};
 use super::constants::Section;
-use super::full48::{full48a, full48b, hermite_middle, quartic_middle};
+use super::full48::{director, full48a, full48b, hermite_middle, quartic_middle};
 use super::tables::{Tables, derivative};
 use super::thin::{Membrane, thin36, thin48};
 
@@ -88,6 +88,12 @@ impl Kind {
         let corners = derivative(&bilinear(), sides, [0, 0], at);
         table.iter_mut().skip(turned).step_by(self.nodal_vectors().len()).zip(corners).for_each(|(t, n)| *t = n);
         table
+    }
+
+    /// The derivatives of the shape functions of a solid's vector through the thickness, as
+    /// [`shape_functions`](Self::shape_functions).
+    pub(crate) fn director_functions(self, sides: [f64; 2], orders: [usize; 2], at: [f64; 2]) -> Vec<f64> {
+        derivative(&director(), sides, orders, at).to_vec()
     }
 
     /// The variant of the element, the default where nothing is given.
