@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::{Block, Form, Measure, SOLID_PAIRS, add_outer};
+use super::{Form, Measure, SOLID_PAIRS, add_outer};
 use crate::lanes::{Lanes, Vector, axpy, dot, scale};
 
 /// The component of each pair of directions in [`SOLID_PAIRS`].
