@@ -1,7 +1,7 @@
 """Print tables of the linear solves: our factorisation beside MKL PARDISO and SciPy's SuperLU, on the same tangents.
 
-Run it from any folder with ``python benchmarks/linear.py [--quick] [--divisions 8 66 148]``; it needs ``pypardiso``. What
-is timed, and what biases it, is in ``benchmarks/README.md``.
+Run it from any folder with ``python benchmarks/linear.py [--quick] [--divisions 8 66 148]``; it needs ``pypardiso``.
+What is timed, and what biases it, is in ``benchmarks/README.md``.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 from abc import ABC, abstractmethod
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -51,10 +52,15 @@ class Solver(ABC):
     """Numeric factorisation of a tangent and solution with it; everything else is done when it is made."""
 
     @abstractmethod
-    def factorise(self) -> None: ...
+    def __init__(self, system: Path) -> None: ...
 
     @abstractmethod
-    def solve(self) -> FloatArray: ...
+    def factorise(self) -> None:
+        """Factorise the matrix."""
+
+    @abstractmethod
+    def solve(self) -> FloatArray:
+        """Solve with the factorisation."""
 
 
 class Ours(Solver):
@@ -69,9 +75,11 @@ class Ours(Solver):
         self.core.tangent(q, 1.0)
 
     def factorise(self) -> None:
+        """Factorise the matrix."""
         self.core.factorize()
 
     def solve(self) -> FloatArray:
+        """Solve with the factorisation."""
         return self.core.solve(self.right)[self.free]
 
 
@@ -82,16 +90,15 @@ class Pardiso(Solver):
     kind = 2  # symmetric, positive definite
 
     def __init__(self, system: Path) -> None:
-        from pypardiso import PyPardisoSolver
-
         # The wrapper's own calls copy the indices each time, which would count.
-        self.pardiso = PyPardisoSolver(mtype=self.kind)
+        self.pardiso = import_module("pypardiso").PyPardisoSolver(mtype=self.kind)
         matrix, self.right = load(system)
         self.arrays = [matrix.data, matrix.indptr.astype(np.int32) + 1, matrix.indices.astype(np.int32) + 1]
         self.solution = np.zeros_like(self.right)
         self.call(self.ANALYSE)
 
     def call(self, phase: int) -> None:
+        """Do a phase."""
         pardiso = self.pardiso
         whole = {k: ctypes.c_int32(k) for k in (0, 1, self.right.size, phase)}
         one, kind, error = whole[1], ctypes.c_int32(self.kind), ctypes.c_int32(0)
@@ -111,15 +118,17 @@ class Pardiso(Solver):
             raise RuntimeError(f"PARDISO failed with error {error.value} in phase {phase}")
 
     def factorise(self) -> None:
+        """Factorise the matrix."""
         self.call(self.FACTORISE)
 
     def solve(self) -> FloatArray:
+        """Solve with the factorisation."""
         self.call(self.SOLVE)
         return self.solution
 
 
 class IndefinitePardiso(Pardiso):
-    """The same for symmetric indefinite matrices: L D L^T with pivoting inside of supernodes, refinement in solutions."""
+    """The same for symmetric indefinite matrices: L D L^T with pivoting in supernodes, and refinement."""
 
     kind = -2
 
@@ -132,11 +141,13 @@ class SuperLU(Solver):
         self.matrix = (upper + scipy.sparse.triu(upper, 1).T).tocsc()
 
     def factorise(self) -> None:
+        """Factorise the matrix."""
         self.lu = scipy.sparse.linalg.splu(
             self.matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
         )
 
     def solve(self) -> FloatArray:
+        """Solve with the factorisation."""
         solution: FloatArray = self.lu.solve(self.right)
         return solution
 
@@ -160,11 +171,13 @@ def save(n: int, folder: Path) -> Path:
     # Row by row as a mesh generator numbers them: the others order for themselves.
     natural = np.sort(free)
     number[natural] = np.arange(natural.size, dtype=np.int32)
-    rows, columns = number[rows], number[columns]
-    upper = rows <= columns
-    matrix = scipy.sparse.csr_matrix((values[upper], (rows[upper], columns[upper])), shape=(free.size, free.size))
+    i, j = number[rows], number[columns]
+    upper = i <= j
+    matrix = scipy.sparse.csr_matrix((values[upper], (i[upper], j[upper])), shape=(free.size, free.size))
     path = folder / f"{n}.npz"
-    np.savez(path, data=matrix.data, indices=matrix.indices, indptr=matrix.indptr, right=core.external_force(q, 1.0)[natural])
+    np.savez(
+        path, data=matrix.data, indices=matrix.indices, indptr=matrix.indptr, right=core.external_force(q, 1.0)[natural]
+    )
     return path
 
 
@@ -182,7 +195,8 @@ def measure(name: str, system: Path) -> dict[str, float]:
     start = time.perf_counter()
     solver = SOLVERS[name](system)
     setup = time.perf_counter() - start
-    factorisations, solutions = [], []
+    factorisations: list[float] = []
+    solutions: list[float] = []
     begin = time.perf_counter()
     while not factorisations or (time.perf_counter() - begin < SECONDS and len(factorisations) < MOST_REPEATS):
         start = time.perf_counter()
@@ -237,10 +251,8 @@ def table(systems: list[Path], threads: int, repeats: int) -> None:
             both = found["factorise"] + found["solve"]
             ratio = f"{both / (other['factorise'] + other['solve']):.2f}" if other else "-"
             times = [f"{1e3 * found[key]:.3g}" for key in ("factorise", "solve", "setup")]
-            print(
-                f"| {found['n']:.0f} | {name} | {times[0]} | {times[1]} | {ratio} | {times[2]} | {found['memory']:.0f} |",
-                flush=True,
-            )
+            cells = [f"{found['n']:.0f}", name, times[0], times[1], ratio, times[2], f"{found['memory']:.0f}"]
+            print(f"| {' | '.join(cells)} |", flush=True)
 
 
 def main() -> None:
