@@ -73,6 +73,12 @@ impl Newton {
         self.kept
     }
 
+    /// `q - q*` of the last solution, without what rounding of the coordinates `q` takes of it. With it inertia balances
+    /// the forces to rounding however far the body has moved.
+    pub(crate) fn from_origin(&self) -> &[f64] {
+        &self.forces.from_origin
+    }
+
     /// Makes the next solution use the factorisation that the system holds, or none.
     pub(crate) fn keep(&mut self, kept: Option<Kept>) {
         self.kept = kept;
@@ -147,7 +153,7 @@ impl Newton {
         let begin = problem.t;
         let coefficients = problem.coefficients();
         self.kept = self.kept.filter(|kept| reuse && kept.coefficients == coefficients);
-        self.forces.begin();
+        self.forces.begin(&problem, q);
         let mut convergence = Convergence::new(tolerance);
         for iteration in 1..=max_iterations {
             if observer.stop() {
@@ -178,6 +184,7 @@ impl Newton {
                 // The old factorisation leads away: back to the start with a new one.
                 q.copy_from_slice(&self.begin);
                 problem.t = begin;
+                self.forces.begin(&problem, q);
                 (self.kept, extrapolate) = (None, false);
                 convergence.restart();
                 continue;
@@ -185,9 +192,7 @@ impl Newton {
             let useful = fresh || convergence.contracts(size);
             let converged = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
             self.previous.copy_from_slice(q);
-            for (q, d) in q.iter_mut().zip(&self.correction) {
-                *q -= d;
-            }
+            self.forces.correct(&self.correction, q);
             extrapolate = mip;
             self.kept = (reuse && useful).then_some(Kept { coefficients, negative });
             if converged {
