@@ -19,7 +19,9 @@ pub(super) struct Forces {
     external: Vec<f64>,
     velocity: Vec<f64>,
     work: Vec<f64>,
+    /// The viscosity of the last evaluation, and the one that would have kept the energy there.
     viscosity: f64,
+    conserving: f64,
 }
 
 /// The tangent that is wanted beside the forces.
@@ -33,12 +35,12 @@ impl Forces {
     pub fn new(coordinates: usize) -> Self {
         let zeros = || vec![0.0; coordinates];
         let [internal, residual, from_origin] = [zeros(), zeros(), zeros()];
-        Self { internal, residual, from_origin, external: zeros(), velocity: zeros(), work: zeros(), viscosity: 0.0 }
+        Self { internal, residual, from_origin, external: zeros(), velocity: zeros(), work: zeros(), viscosity: 0.0, conserving: 0.0 }
     }
 
     /// Begins at some coordinates.
     pub fn begin(&mut self, problem: &Problem<'_>, q: &[f64]) {
-        self.viscosity = 0.0;
+        self.conserving = 0.0;
         for ((from_origin, q), origin) in self.from_origin.iter_mut().zip(q).zip(problem.origin) {
             *from_origin = q - origin;
         }
@@ -60,6 +62,42 @@ impl Forces {
         q: &[f64],
         tangent: Option<Tangent<'_>>,
     ) -> StrainEnergy {
+        self.viscosity = self.conserving;
+        let strain = self.form(system, problem, q, tangent);
+        if problem.start.is_some() {
+            let rate = problem.velocity.map_or(0.0, |velocity| velocity.rate);
+            self.conserving = conserving_viscosity(system.strain_rates(), rate);
+        }
+        strain
+    }
+
+    /// `J x` by a difference, where `J` is the true derivative of the residual at the coordinates `q` of the last
+    /// evaluation, for the viscosity there; `length` is that of the difference.
+    pub fn derivative(
+        &self,
+        system: &mut System,
+        problem: &Problem<'_>,
+        [q, x]: [&[f64]; 2],
+        length: f64,
+        product: &mut [f64],
+    ) {
+        let moved: Vec<f64> = q.iter().zip(x).map(|(q, x)| q + length * x).collect();
+        let mut there = Self::new(q.len());
+        there.begin(problem, &moved);
+        there.viscosity = self.viscosity;
+        there.form(system, problem, &moved, None);
+        for ((product, there), here) in product.iter_mut().zip(&there.residual).zip(&self.residual) {
+            *product = (there - here) / length;
+        }
+    }
+
+    fn form(
+        &mut self,
+        system: &mut System,
+        problem: &Problem<'_>,
+        q: &[f64],
+        tangent: Option<Tangent<'_>>,
+    ) -> StrainEnergy {
         let mut motion = None;
         if let Some(Velocity { rate, at_origin }) = problem.velocity {
             for i in 0..q.len() {
@@ -74,10 +112,6 @@ impl Forces {
         } else {
             system.force(at, &mut self.internal)
         };
-        if problem.start.is_some() {
-            let rate = problem.velocity.map_or(0.0, |velocity| velocity.rate);
-            self.viscosity = conserving_viscosity(system.strain_rates(), rate);
-        }
         self.form_residual(system, problem, q);
         strain
     }

@@ -1,12 +1,19 @@
 //! Newton's method: plain, with mixed integration points, and modified.
 
 use crate::assembly::System;
+use crate::linear::gmres;
 use crate::observe::Observer;
 
 use super::convergence::Convergence;
 use super::forces::{Forces, Tangent};
 use super::scale::scales;
 use super::{Failure, Options, Problem, Variant};
+
+/// Accuracy of corrections with the part of a tangent that is not assembled, the most products for it, and the length of
+/// the differences that make them, relative to the size of the model.
+const TURNING_TOLERANCE: f64 = 1e-2;
+const TURNING_PRODUCTS: usize = 8;
+const DIFFERENCE: f64 = 1e-7;
 
 /// How a solution was found.
 #[derive(Clone, Copy, Debug)]
@@ -175,6 +182,9 @@ impl Newton {
             let mut size = f64::INFINITY;
             if finite {
                 system.solve(&self.forces.residual, &mut self.correction);
+                if problem.start.is_some() {
+                    self.bring_in_turning(system, &problem, q);
+                }
                 if let Some(normal) = normal {
                     problem.t += stay_in_plane(system, normal, q, problem.t, &mut self.correction);
                 }
@@ -203,6 +213,19 @@ impl Newton {
             }
         }
         Err(Failure::NotConverged { iterations: max_iterations, correction: convergence.size })
+    }
+
+    /// Corrects for what the assembled tangent of mean forces lacks: strains change along `B` at the end of the step, not at
+    /// its middle, `B_m^T W (B_1 - B_m) / 2`, which is not symmetric. The factorised tangent is the preconditioner.
+    fn bring_in_turning(&mut self, system: &mut System, problem: &Problem<'_>, q: &[f64]) {
+        let Self { forces, correction, scale, .. } = self;
+        let mut product = vec![0.0; q.len()];
+        let apply = |x: &[f64], y: &mut [f64]| {
+            let size = x.iter().zip(scale.iter()).map(|(x, s)| x.abs() / s).fold(0.0, f64::max);
+            forces.derivative(system, problem, [q, x], DIFFERENCE / size, &mut product);
+            system.solve(&product, y);
+        };
+        gmres(apply, correction, TURNING_TOLERANCE, TURNING_PRODUCTS);
     }
 }
 
