@@ -35,7 +35,16 @@ impl Forces {
     pub fn new(coordinates: usize) -> Self {
         let zeros = || vec![0.0; coordinates];
         let [internal, residual, from_origin] = [zeros(), zeros(), zeros()];
-        Self { internal, residual, from_origin, external: zeros(), velocity: zeros(), work: zeros(), viscosity: 0.0, conserving: 0.0 }
+        Self {
+            internal,
+            residual,
+            from_origin,
+            external: zeros(),
+            velocity: zeros(),
+            work: zeros(),
+            viscosity: 0.0,
+            conserving: 0.0,
+        }
     }
 
     /// Begins at some coordinates.
