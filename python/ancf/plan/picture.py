@@ -40,19 +40,18 @@ def draw(plan: Plan) -> Figure:
         left.set_xlabel("time of the run / s")
         left.set_ylabel("estimated error, relative")
         left.legend(fontsize="small", frameon=False)
-        if plan.result is not None:
-            probes = [probe for probe in plan.scene.model.probes if probe.name in plan.scale]
-            for index, probe in enumerate(probes):
-                record = plan.result.probes[probe.name]
-                change = (record.value - record.value[0]) / plan.scale[probe.name]
-                for values, component, style in zip(
-                    change.T, QUANTITIES[probe.quantity].components, _STYLES, strict=False
-                ):
-                    right.plot(record.t, values, style, color=f"C{index}", label=f"{probe.name} {component}")
-            run = plan.result.run
-            right.set_xlabel(" / ".join(part for part in (run.parameter, run.unit) if part))
-            right.set_ylabel("change, relative to its largest")
-            right.legend(fontsize="small", frameon=False)
+        probes = [probe for probe in plan.scene.model.probes if probe.name in plan.scale]
+        for index, probe in enumerate(probes):
+            record = plan.result.probes[probe.name]
+            change = (record.value - record.value[0]) / plan.scale[probe.name]
+            for values, component, style in zip(
+                change.T, QUANTITIES[probe.quantity].components, _STYLES, strict=False
+            ):
+                right.plot(record.t, values, style, color=f"C{index}", label=f"{probe.name} {component}")
+        run = plan.result.run
+        right.set_xlabel(" / ".join(part for part in (run.parameter, run.unit) if part))
+        right.set_ylabel("change, relative to its largest")
+        right.legend(fontsize="small", frameon=False)
         for axes in (left, right):
             axes.grid(alpha=0.25)
             axes.spines[["top", "right"]].set_visible(False)

@@ -18,6 +18,7 @@ from ancf.plan.report import Plan, Row
 from ancf.plan.rigid import deflection
 from ancf.plan.search import Search
 from ancf.plan.timing import SHARE, Timing, reference, steppings
+from ancf.result import Result
 from ancf.run import Dynamic, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import solve
@@ -181,7 +182,7 @@ def _as_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: floa
     chosen = apply(scene, pilot.choice)
     return Plan(
         scene=chosen,
-        result=pilot.result,
+        result=_result(pilot),
         choice=str(pilot.choice),
         tol=tol,
         scale=scale,
@@ -294,7 +295,7 @@ def _report(
     where = next(i for i, p in enumerate(pilots.done) if p.choice == chosen.choice)
     return Plan(
         scene=apply(pilots.scene, chosen.choice),
-        result=chosen.result,
+        result=_result(chosen),
         choice=str(chosen.choice),
         tol=tol,
         scale=dict(zip(pilots.want, scale, strict=True)),
@@ -308,6 +309,11 @@ def _report(
         predicted_seconds=search.predicted.get(chosen.choice, chosen.seconds),
         threads=1 if chosen.choice.rung.elements <= 64 else None,
     )
+
+
+def _result(pilot: Pilot) -> Result:
+    assert pilot.result is not None
+    return pilot.result
 
 
 def _last_words(pilots: Pilots) -> str:

@@ -50,8 +50,8 @@ class Plan:
     ----------
     scene : Scene
         With the chosen settings, ready to be run or written.
-    result : Result or None
-        The run of it, if it was made as a pilot.
+    result : Result
+        The run of it, which was one of the pilots.
     choice : str
         The settings in words.
     tol : float
@@ -77,7 +77,7 @@ class Plan:
     """
 
     scene: Scene = field(repr=False)
-    result: Result | None = field(repr=False)
+    result: Result = field(repr=False)
     choice: str
     tol: float
     scale: dict[str, float]
