@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,7 +20,7 @@ def add(commands: Subparsers) -> None:
     parser = commands.add_parser(
         "plan",
         help="find the cheapest settings of a scene that are precise enough",
-        description="Find the cheapest settings of a scene for which the error in what is wanted stays below a tolerance.",
+        description="Find the cheapest settings for which the error in what is wanted stays below a tolerance.",
     )
     parser.add_argument("scene", type=Path, metavar="SCENE.toml")
     add_options(parser, tol=1e-2)
@@ -43,7 +42,9 @@ def add_options(parser: argparse.ArgumentParser, tol: float | None) -> None:
         metavar="T",
         help=f"plan: largest error, relative to the largest change of what is wanted{default}",
     )
-    parser.add_argument("--want", action="append", metavar="PROBE", help="plan: what must be precise; default: all probes")
+    parser.add_argument(
+        "--want", action="append", metavar="PROBE", help="plan: what must be precise; default: all probes"
+    )
     parser.add_argument(
         "--budget", type=_number, default=BUDGET, metavar="S", help=f"plan: seconds it may take; default: {BUDGET:g}"
     )
@@ -62,23 +63,21 @@ def _number(text: str) -> float:
 def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
     folder = options.output or Path(f"{options.scene.stem}-plan")
-    make_plan(options.scene, folder, options.want, options.tol, options.budget, options.threads, options.quiet)
+    make_plan(options, folder)
     return OK
 
 
-def make_plan(
-    scene: Path, folder: Path, want: Sequence[str] | None, tol: float, budget: float, threads: int | None, quiet: bool
-) -> Plan:
+def make_plan(options: argparse.Namespace, folder: Path) -> Plan:
     """Plan a scene file and write the answer to a folder; nothing is left there if the plan fails."""
     made = make_folder(folder)
     try:
-        found = plan(scene, want=want, tol=tol, budget=budget, threads=threads)
+        found = plan(options.scene, want=options.want, tol=options.tol, budget=options.budget, threads=options.threads)
     except BaseException:
         remove_folders(made)
         raise
     found.write(folder)
-    if not quiet:
-        print(f"{found.scene.title or scene.stem}, planned")
+    if not options.quiet:
+        print(f"{found.scene.title or options.scene.stem}, planned")
         print(found)
         print(f"  Written to {folder}; to run it: ancf run {folder / 'scene.toml'} -o DIR", flush=True)
     return found

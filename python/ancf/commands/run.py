@@ -56,18 +56,20 @@ def call(options: argparse.Namespace) -> int:
         check_fields(folder / FIELDS)
     planned = None
     if options.tol is not None:
-        planned = make_plan(
-            options.scene, folder, options.want, options.tol, options.budget, options.threads, options.quiet
-        )
+        planned = make_plan(options, folder)
     made = make_folder(folder)
     try:
         # The chosen pilot was a whole run.
-        result = planned.result if planned is not None else scene.solve(
-            checkpoint=options.checkpoint or options.resume,
-            resume=options.resume,
-            threads=options.threads,
-            progress=not options.quiet and sys.stderr is not None,
-            throw=False,
+        result = (
+            planned.result
+            if planned is not None
+            else scene.solve(
+                checkpoint=options.checkpoint or options.resume,
+                resume=options.resume,
+                threads=options.threads,
+                progress=not options.quiet and sys.stderr is not None,
+                throw=False,
+            )
         )
     except InputError:
         remove_folders(made)

@@ -152,7 +152,12 @@ def _measure(family: Family) -> Rates:
     setup, iteration, force = [], [], []
     for n in _SIDES:
         plate = Rectangle(
-            size=(0.3, 0.3), divisions=(n, n), thickness=0.01, material=rubber, element=family.element, membrane=family.membrane
+            size=(0.3, 0.3),
+            divisions=(n, n),
+            thickness=0.01,
+            material=rubber,
+            element=family.element,  # type: ignore[arg-type]
+            membrane=family.membrane,  # type: ignore[arg-type]
         )
         model = Model(
             bodies={"plate": plate},

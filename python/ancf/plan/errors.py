@@ -50,5 +50,4 @@ class Side:
         """What is left along the side, relative, with safety."""
         low, high = RATES
         rate = UNKNOWN_RATE if self.rate is None else min(max(self.rate, low), high)
-        return SAFETY * self.difference / (2.0**rate - 1.0)
-
+        return float(SAFETY * self.difference / (2.0**rate - 1.0))

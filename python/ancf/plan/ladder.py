@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ancf.bodies import NODAL_VECTORS, Plate
 from ancf.model import Model
@@ -19,7 +19,7 @@ _FINEST_BASE = 16
 
 
 class Family(NamedTuple):
-    """An element and the variant of its membrane; None for a solid."""
+    """An element and the variant of its membrane; None for rigid bodies."""
 
     element: str
     membrane: str | None
@@ -31,7 +31,6 @@ class Family(NamedTuple):
 RIGID = Family("rigid", None)
 THIN = tuple(Family("thin36", membrane) for membrane in ("projected", "lobatto", "full"))
 CONTINUOUS = Family("thin48", "projected")
-SOLID = Family("full48b", None)
 
 
 @dataclass(frozen=True)
@@ -115,8 +114,6 @@ def families(model: Model) -> tuple[Family, ...]:
     """Return the thin families that the supports allow: `thin48` only if no vector of another element is fixed."""
     named = {name.partition(".")[0] for support in model.supports for name in support.fix}
     allowed = [family for family in (*THIN, CONTINUOUS) if named <= set(NODAL_VECTORS[family.element])]
-    if any(body.curvature == "koiter" for body in model.bodies.values()):
-        return tuple(allowed)
     return tuple(allowed)
 
 
@@ -134,7 +131,7 @@ def coarsest(model: Model) -> tuple[tuple[int, int], ...]:
     return tuple(divisions)
 
 
-def outputs(run: Dynamic) -> dict[str, object]:
+def outputs(run: Dynamic) -> dict[str, Any]:
     """Return when `run` records states, independently of its steps."""
     if run.outputs is not None:
         return {"outputs": run.outputs}
@@ -181,6 +178,4 @@ def apply(scene: Scene, choice: Choice) -> Scene:
 
 def _remake(body: Plate, family: Family, divisions: tuple[int, int]) -> Plate:
     element, membrane = ("thin36", "lobatto") if family == RIGID else family
-    curvature = None if element.startswith("full48") else body.curvature
-    settings = {"divisions": divisions, "element": element, "membrane": membrane, "curvature": curvature}
-    return body.model_copy(update=settings)
+    return body.model_copy(update={"divisions": divisions, "element": element, "membrane": membrane})

@@ -44,9 +44,7 @@ def draw(plan: Plan) -> Figure:
         for index, probe in enumerate(probes):
             record = plan.result.probes[probe.name]
             change = (record.value - record.value[0]) / plan.scale[probe.name]
-            for values, component, style in zip(
-                change.T, QUANTITIES[probe.quantity].components, _STYLES, strict=False
-            ):
+            for values, component, style in zip(change.T, QUANTITIES[probe.quantity].components, _STYLES, strict=False):
                 right.plot(record.t, values, style, color=f"C{index}", label=f"{probe.name} {component}")
         run = plan.result.run
         right.set_xlabel(" / ".join(part for part in (run.parameter, run.unit) if part))

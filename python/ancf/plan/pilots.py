@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ancf.errors import InputError
 from ancf.plan.ladder import Choice, apply
 from ancf.result import Result
+from ancf.run import Modes
 from ancf.scene import Scene
 from ancf.solve import solve
 
@@ -47,7 +48,7 @@ class Pilot:
         return self.result is not None
 
 
-class _TooSlow(Exception):
+class _TooSlowError(Exception):
     """A pilot has used up its time."""
 
 
@@ -111,34 +112,38 @@ class Pilots:
         """
         if choice in self._done and (self._done[choice].ok or self._done[choice].outcome != _SLOW):
             return self._done[choice]
-        pilot = self._run(choice, min(limit, max(self.left, 0.0)))
+        pilot = self._run(choice, limit if self.left > 0.0 else 0.0)
         self._done[choice] = pilot
         return pilot
 
     def _run(self, choice: Choice, limit: float) -> Pilot:
-        start = time.perf_counter()
+        threads = 1 if choice.rung.elements <= _ONE_TASK else self.threads
+        # On one thread the processor's time is what the run costs, whatever else the machine does.
+        clock = time.process_time if threads == 1 else time.perf_counter
+        start = clock()
 
         def watch(_: float) -> None:
-            if time.perf_counter() - start > limit:
-                raise _TooSlow
+            if clock() - start > limit or self.left <= 0.0:
+                raise _TooSlowError
+
+        def failed(outcome: str) -> Pilot:
+            return Pilot(choice, None, [], clock() - start, outcome)
 
         if limit <= 0:
-            return Pilot(choice, None, [], 0.0, _SLOW)
+            return failed(_SLOW)
         try:
             scene = apply(self.scene, choice)
-            threads = 1 if choice.rung.elements <= _ONE_TASK else self.threads
-            worked = time.process_time()
+            start = clock()
+            assert not isinstance(scene.run, Modes)
             result = solve(scene.model, scene.run, threads=threads, progress=watch, throw=False)
-            worked = time.process_time() - worked
-        except _TooSlow:
-            return Pilot(choice, None, [], time.perf_counter() - start, _SLOW)
+        except _TooSlowError:
+            return failed(_SLOW)
         except InputError as error:
-            return Pilot(choice, None, [], time.perf_counter() - start, str(error))
+            return failed(str(error))
+        seconds = clock() - start
         if result.status != "ok":
-            return Pilot(choice, None, [], time.perf_counter() - start, result.reason)
-        values = [result.probes[name].value for name in self.want]
-        # On one thread the processor's time is what the run costs, whatever else the machine does.
-        return Pilot(choice, result, values, worked if threads == 1 else result.seconds["total"], "ok")
+            return failed(result.reason)
+        return Pilot(choice, result, [result.probes[name].value for name in self.want], seconds, "ok")
 
 
 _SLOW = "slower than others"

@@ -136,7 +136,9 @@ def _check(scene: Scene, tol: float, budget: float) -> None:
     if not isinstance(scene.run, (Static, Dynamic)):
         mistakes.add(("run", "kind"), "statics and motion can be planned", scene.run.kind)
     if isinstance(scene.run, Static) and scene.run.path == "arc":
-        mistakes.add(("run", "path"), 'can be planned only for "load": steps along an arc differ from mesh to mesh', "arc")
+        mistakes.add(
+            ("run", "path"), 'can be planned only for "load": steps along an arc differ from mesh to mesh', "arc"
+        )
     mistakes.check()
 
 
@@ -166,6 +168,7 @@ def _rigid(
     # Deflections need more than the corners.
     finer = Rung(family, tuple((max(x, 2), max(y, 2)) for x, y in divisions))
     again = apply(pilots.scene, replace(pilot.choice, rung=replace(finer, family=RIGID)))
+    assert isinstance(again.run, Dynamic)
     result = solve(again.model, again.run, threads=1, throw=False)
     elastic = apply(pilots.scene, Choice(finer)).model
     bent = dict(zip((p.name for p in elastic.probes), deflection(elastic, result), strict=True))
@@ -280,7 +283,9 @@ def _report(
             if slow
             else "the budget or the largest mesh was reached"
         )
-        reasons.append(f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.1g}.")
+        reasons.append(
+            f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.1g}."
+        )
     rows = [
         Row(
             str(p.choice),
@@ -292,7 +297,7 @@ def _report(
         )
         for p in pilots.done
     ]
-    where = next(i for i, p in enumerate(pilots.done) if p.choice == chosen.choice)
+    index = next(i for i, p in enumerate(pilots.done) if p.choice == chosen.choice)
     return Plan(
         scene=apply(pilots.scene, chosen.choice),
         result=_result(chosen),
@@ -304,7 +309,7 @@ def _report(
         converged=converged,
         reasons=reasons,
         rows=rows,
-        chosen=where,
+        chosen=index,
         seconds=pilots.spent,
         predicted_seconds=search.predicted.get(chosen.choice, chosen.seconds),
         threads=1 if chosen.choice.rung.elements <= 64 else None,

@@ -172,8 +172,8 @@ class Search:
     def _learn(self, rung: Rung, last: Rung | None) -> None:
         """Set the finest rung, what is known along its sides, the extrapolated values and what they lack.
 
-        Small rungs are compared with their neighbours that are coarser along one side. Of larger ones only the last rung
-        is at hand: its difference is shared out along the sides that were refined as the errors were before.
+        Small rungs are compared with their neighbours that are coarser along one side. Of larger ones only the last
+        rung is at hand: its difference is shared out along the sides that were refined as the errors were before.
         """
         values = self.values(rung)
         assert values is not None
@@ -222,7 +222,7 @@ class Search:
         self.own = max(self.own - (1 - _TRUST) * removed, _TRUST * self.own)
 
     def _confirmed(self, rung: Rung) -> bool:
-        """Check the estimate with another element on the same mesh; if that is too far off, half of it may be missing."""
+        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing."""
         order = sorted(self.families, key=lambda family: family.element == rung.family.element)
         for family in order:
             if family == rung.family:
@@ -261,7 +261,7 @@ class Search:
             self.run(trial, 1.5 * limit + 0.02)
 
     def observed(self) -> dict[Choice, float]:
-        """Return the error of every pilot that reached its end: its distance to the exact values and what these lack."""
+        """Return the error of every pilot that reached its end: its distance to `exact` and what that lacks."""
         scale = scales(self.exact)
         done = (pilot for pilot in self.pilots.done if pilot.ok)
         return {pilot.choice: distance(pilot.values, self.exact, scale) + self.own for pilot in done}
@@ -325,7 +325,9 @@ class Search:
             if pilot.ok and rung.family == family:
                 error = max(distance(pilot.values, self.exact, scale), 1e-12)
                 # Fine rungs tell more of fine ones.
-                rows.append([_power(rung, at, rates) / error * rung.elements**0.5 for at in sides] + [rung.elements**0.5])
+                rows.append(
+                    [_power(rung, at, rates) / error * rung.elements**0.5 for at in sides] + [rung.elements**0.5]
+                )
         if not rows:
             # Nothing is known of it: as good as the one that was refined.
             return self._guess(self.best.family) if family != self.best.family else _Guess(rates, {})
@@ -353,7 +355,7 @@ class _Guess:
 
 def _power(rung: Rung, at: tuple[int, int], rates: dict[tuple[int, int], float]) -> float:
     body, axis = at
-    return float(rung.divisions[body][axis]) ** -rates.get(at, 2.0)
+    return float(float(rung.divisions[body][axis]) ** -rates.get(at, 2.0))
 
 
 def _within(rung: Rung, other: Rung) -> bool:

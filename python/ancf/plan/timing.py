@@ -153,9 +153,5 @@ def _size(pilots: Pilots) -> float:
 def _relative(pilots: Pilots, scale: list[float], size: float) -> float:
     """Return the smallest scale of a wanted position, relative to the size of the model; 1 if none is wanted."""
     kinds = {probe.name: probe.quantity for probe in pilots.scene.model.probes}
-    lengths = [
-        s for name, s in zip(pilots.want, scale, strict=True) if kinds[name] in ("position", "displacement")
-    ]
+    lengths = [s for name, s in zip(pilots.want, scale, strict=True) if kinds[name] in ("position", "displacement")]
     return min([*(length / size for length in lengths), 1.0])
-
-
