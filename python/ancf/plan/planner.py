@@ -227,6 +227,7 @@ def _first_family(search: Search) -> Family | None:
         fine = Rung(family, tuple((2 * x, 2 * y) for x, y in search.base))
         pilots = [search.run(rung, 3 * cheapest + 0.02) for rung in (coarse, fine)]
         if pilots[1].ok:
+            _scales(pilots[1].values, search.pilots.want)
             cheapest = min(cheapest, pilots[1].seconds)
             change = np.inf
             if pilots[0].ok:

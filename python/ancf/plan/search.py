@@ -41,6 +41,10 @@ _STALLED = 0.4
 """Rate of convergence that counts as no better."""
 _AGREED = 0.6
 """Part of the tolerance up to which another element on the finest mesh may be off."""
+_DOWN = 0.4
+"""Time for each part of the way down, relative to the time before."""
+_HOPE = 5.0
+"""Errors, relative to the tolerance, that may be too large only by the model that guesses them."""
 _LARGEST = 20_000
 """Elements of the finest rung."""
 
@@ -250,15 +254,39 @@ class Search:
         return rung if any(side.error > _SMALL_SIDE * self.tol for side in self.sides.values()) else _doubled(rung)
 
     def down(self) -> None:
-        """Look for cheaper rungs below the finest."""
+        """Look for cheaper rungs below the finest: first those that promise most, then all that might do, cheap first.
+
+        Errors of coarse rungs can cancel, so that one is better than what a finer one of its family lets expect.
+        """
         start = self.pilots.spent
         for _ in range(_TRIALS):
-            current = self.cheapest(self.observed())
-            limit = np.inf if current is None else current.seconds
+            limit = self._limit()
             trial = self._trial(limit)
-            if trial is None or self.pilots.spent - start > max(start, 0.1):
+            if trial is None or self.pilots.spent > (1 + _DOWN) * start:
                 break
             self.run(trial, 1.5 * limit + 0.02)
+        start = self.pilots.spent
+        for cost, rung in self._cheap():
+            limit = self._limit()
+            if cost > _WORTH * limit or self.pilots.spent > (1 + _DOWN) * start:
+                break
+            self.run(rung, limit + 0.02)
+
+    def _limit(self) -> float:
+        current = self.cheapest(self.observed())
+        return np.inf if current is None else current.seconds
+
+    def _cheap(self) -> list[tuple[float, Rung]]:
+        """Return the rungs that were not run and might be good enough, with their predicted costs, cheapest first."""
+        tried = {pilot.choice.rung for pilot in self.pilots.done}
+        found = []
+        for family in self.families:
+            guess = self._guess(family)
+            for rung in self._below(family):
+                cost = self.predict(rung)
+                if rung not in tried and cost is not None and guess(rung) <= _HOPE * self.tol:
+                    found.append((cost, rung))
+        return sorted(found, key=lambda pair: pair[0])
 
     def observed(self) -> dict[Choice, float]:
         """Return the error of every pilot that reached its end: its distance to `exact` and what that lacks."""
