@@ -9,9 +9,11 @@ import pytest
 
 import ancf
 from ancf import cli
+from ancf.plan import pilots
 from ancf.plan.errors import Side, distance, scales
 from ancf.plan.ladder import RIGID, THIN, Choice, Rung, coarsest
 from ancf.plan.rigid import deflection
+from ancf.plan.symmetry import halved
 
 STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
 RUBBER = ancf.Material(E=1e6, nu=0.3, density=1000.0)
@@ -82,7 +84,7 @@ def test_a_soft_plate_is_no_rigid_body() -> None:
         size=(0.3, 0.1), divisions=(8, 3), thickness=0.01, material=RUBBER, element="thin48", membrane="projected"
     )
     reference = ancf.Model(bodies={"plate": fine}, supports=model.supports, loads=[WEIGHT], probes=model.probes)
-    exact = ancf.simulate(reference, until=0.1, method="esdirk", step=1e-3, outputs=plan.result.t[1:])
+    exact = ancf.simulate(reference, until=0.1, method="esdirk", step=1e-3, outputs=plan.result.t[1:].tolist())
     values = exact.probes["A"].value
     assert distance([plan.result.probes["A"].value], [values], scales([values])) < 0.1
 
@@ -100,6 +102,49 @@ def test_the_deflection_of_a_rigid_cantilever_is_the_linear_one() -> None:
     rigid = ancf.simulate(model, until=0.1, method="rigid", rtol=1e-4)
     expected = 2 * 7800.0 * 9.81 * 2e-3 * 0.2**4 / (8 * 2e11 * (2e-3) ** 3 / 12)
     assert deflection(model, rigid)[0] == pytest.approx(expected, rel=1e-3)
+
+
+def blown(size: tuple[float, float], divisions: tuple[int, int], supports: list[ancf.Support]) -> ancf.Model:
+    plate = ancf.Rectangle(size=size, divisions=divisions, thickness=8e-3, material=RUBBER)
+    probe = ancf.Probe(name="A", at=(0.2, 0.15))
+    return ancf.Model(
+        bodies={"mat": plate}, supports=supports, loads=[ancf.Pressure(pressure=200.0), WEIGHT], probes=[probe]
+    )
+
+
+def test_a_symmetric_scene_is_halved() -> None:
+    ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
+    plan = ancf.plan(blown((0.4, 0.3), (4, 4), ends), run=ancf.Static(), tol=1e-1)
+    assert "symmetric across the middle of x and y" in " ".join(plan.reasons)
+    body = plan.scene.model.bodies["mat"]
+    assert isinstance(body, ancf.Rectangle)
+    assert body.size == (0.2, 0.15)
+    whole = ancf.solve_static(blown((0.4, 0.3), (12, 8), ends)).probes["A"].value
+    assert distance([plan.result.probes["A"].value], [whole], scales([whole])) < 0.1
+
+
+def test_what_is_not_symmetric_is_not_halved() -> None:
+    model = blown((0.4, 0.3), (4, 4), [ancf.Support(at="edge:x0", clamp=True)])
+    assert halved(ancf.Scene("", model, ancf.Static()))[1] == [1]
+    pull = ancf.LineLoad(at="edge:x1", per_length=(0.0, 1.0, 0.0))
+    pulled = ancf.Model(bodies=model.bodies, supports=model.supports, loads=[pull], probes=model.probes)
+    assert halved(ancf.Scene("", pulled, ancf.Static()))[1] == []
+
+
+def test_halves_of_forces_and_pairs_of_loads() -> None:
+    model = blown(
+        (0.4, 0.3), (4, 4), [ancf.Support(at="corner:x0y0", fix=["r"]), ancf.Support(at="corner:x1y0", fix=["r"])]
+    )
+    force = ancf.Force(at=(0.2, 0.1), force=(0.0, 2.0, 4.0))
+    moments = [ancf.Moment(at=f"edge:x{end}", per_length=1.0) for end in (0, 1)]
+    whole = ancf.Model(bodies=model.bodies, supports=model.supports, loads=[force, *moments], probes=model.probes)
+    scene, mirrors = halved(ancf.Scene("", whole, ancf.Static()))
+    assert mirrors == [0]
+    assert [load.kind for load in scene.model.loads] == ["force", "moment"]
+    half = scene.model.loads[0]
+    assert isinstance(half, ancf.Force)
+    assert half.force == (0.0, 1.0, 2.0)
+    assert [support.at for support in scene.model.supports] == ["corner:x0y0", "edge:x1"]
 
 
 def test_errors_of_a_geometric_sequence_are_covered() -> None:
@@ -209,6 +254,6 @@ def test_ctrl_c_ends_a_plan(scene: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("ancf.plan.pilots.solve", interrupt)
+    monkeypatch.setattr(pilots, "solve", interrupt)
     assert cli.main(["plan", str(scene)]) == 130
     assert not Path("flight-plan").exists()

@@ -15,9 +15,9 @@ from ancf.plan.ladder import COUNTS, RIGID, Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.timing import Timing
 
-BEST = 0.4
+BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
-ACCEPT = 0.8
+ACCEPT = 0.9
 """Part of the tolerance that the estimated error of the choice may reach."""
 _DOMINANT = 0.4
 """A side is refined if its error is at least this part of the largest."""
