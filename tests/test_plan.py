@@ -13,6 +13,7 @@ from ancf.plan import pilots
 from ancf.plan.errors import Side, distance, scales
 from ancf.plan.ladder import RIGID, THIN, Choice, Rung, coarsest
 from ancf.plan.rigid import deflection
+from ancf.plan.shear import shear
 from ancf.plan.symmetry import halved
 
 STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
@@ -145,6 +146,15 @@ def test_halves_of_forces_and_pairs_of_loads() -> None:
     assert isinstance(half, ancf.Force)
     assert half.force == (0.0, 1.0, 2.0)
     assert [support.at for support in scene.model.supports] == ["corner:x0y0", "edge:x1"]
+
+
+def test_shear_is_told_of_thick_plates() -> None:
+    """A cantilever of length L and height h deflects by F L / k G A from shear, F L^3 / 3 E I from bending."""
+    plate = ancf.Rectangle(size=(0.3, 0.9), divisions=(1, 1), thickness=0.03, material=STEEL)
+    stiff, area, inertia, length = 2.07e11, 0.03, 0.03**3 / 12, 0.3
+    by_shear = length / (5 / 6 * stiff / 2.6 * area)
+    by_bending = length**3 / (3 * stiff * inertia)
+    assert shear(ancf.Model(bodies={"plate": plate}))["plate"] == pytest.approx(by_shear / by_bending)
 
 
 def test_errors_of_a_geometric_sequence_are_covered() -> None:

@@ -17,6 +17,7 @@ from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.report import Plan, Row
 from ancf.plan.rigid import deflection
 from ancf.plan.search import Search
+from ancf.plan.shear import told
 from ancf.plan.symmetry import doubled, halved
 from ancf.plan.timing import SHARE, Timing, reference, steppings
 from ancf.result import Result
@@ -322,6 +323,7 @@ def _report(
         reasons.append(
             f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.1g}."
         )
+    reasons += told(pilots.scene.model, tol)
     rows = [
         Row(
             str(p.choice),

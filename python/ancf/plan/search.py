@@ -271,6 +271,15 @@ class Search:
             if cost > _WORTH * limit or self.pilots.spent > (1 + _DOWN) * start:
                 break
             self.run(rung, limit + 0.02)
+        self._lengthen()
+
+    def _lengthen(self) -> None:
+        """Try on the cheapest rung the longer steps that finer or other rungs could not be solved with."""
+        current = self.cheapest(self.observed())
+        for stepping in self.allowed if current is not None else []:
+            assert current is not None
+            if stepping != current.choice.stepping:
+                self.pilots.run(replace(current.choice, stepping=stepping), _WORTH * self._limit())
 
     def _limit(self) -> float:
         current = self.cheapest(self.observed())
