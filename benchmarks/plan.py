@@ -279,7 +279,7 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--quick", action="store_true")
     options = parser.parse_args()
-    names = [case.scene.title for case in (*statics(), *motions())]
+    names = [case.scene.title for case in (*motions(), *statics())]
     if options.quick:
         names = ["thick plate", "steel hinged"]
     names = options.scenes or names

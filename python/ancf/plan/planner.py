@@ -120,7 +120,7 @@ def _flexible(pilots: Pilots, costs: Costs, tol: float) -> Plan:
     search.down()
     chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
     in_space = search.observed()[chosen.choice]
-    chosen, in_time = _check_time(search, chosen, scale)
+    chosen, in_time = _check_time(search, chosen, scale, search.tol - in_space)
     return _report(search, chosen, in_space, in_time, scale)
 
 
@@ -273,7 +273,7 @@ def _first_family(search: Search) -> Family | None:
     return min(fine, key=doubt)
 
 
-def _check_time(search: Search, chosen: Pilot, scale: Sequence[float]) -> tuple[Pilot, float]:
+def _check_time(search: Search, chosen: Pilot, scale: Sequence[float], allowed: float) -> tuple[Pilot, float]:
     """Repeat the choice with tighter steps until they no longer matter; return it with its error in time, relative."""
     error = 0.0
     for _ in range(_CHECKS):
@@ -284,7 +284,7 @@ def _check_time(search: Search, chosen: Pilot, scale: Sequence[float]) -> tuple[
         if not tight.ok:
             break
         error = distance(tight.values, chosen.values, scale)
-        if error <= 2 * SHARE * search.tol:
+        if error <= max(allowed, SHARE * search.tol):
             break
         chosen = tight
     return chosen, error
@@ -299,7 +299,7 @@ def _report(
 ) -> Plan:
     pilots, tol, finest = search.pilots, search.tol, search.best
     errors = search.observed()
-    converged = in_space <= tol and in_time <= tol / 2
+    converged = in_space + in_time <= tol
     reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.1g}."]
     if chosen.choice.rung == finest:
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."

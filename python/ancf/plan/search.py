@@ -13,12 +13,10 @@ from ancf.plan.cost import Costs
 from ancf.plan.errors import RATES, Side, Values, distance, scales
 from ancf.plan.ladder import COUNTS, RIGID, Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
-from ancf.plan.timing import Timing
+from ancf.plan.timing import SHARE, Timing
 
 BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
-ACCEPT = 0.9
-"""Part of the tolerance that the estimated error of the choice may reach."""
 _DOMINANT = 0.4
 """A side is refined if its error is at least this part of the largest."""
 _SMALL_SIDE = 0.05
@@ -85,6 +83,11 @@ class Search:
     def __post_init__(self) -> None:
         """Allow the steppings that are good enough; those that replace them are allowed later."""
         self.allowed = [timing.stepping for timing in self.timings]
+
+    @property
+    def allowance(self) -> float:
+        """The error in space that the choice may have: in motion a share is left for that in time."""
+        return (1.0 - SHARE if self.timings else 1.0) * self.tol
 
     def stepping(self, rung: Rung) -> Stepping | None:
         """Return the stepping that is predicted to be the cheapest on a rung; None in statics."""
@@ -310,7 +313,7 @@ class Search:
         fits = [
             pilot
             for choice, error in errors.items()
-            if error <= ACCEPT * self.tol
+            if error <= self.allowance
             and choice.stepping in allowed
             and (pilot := self.pilots.known(choice)) is not None
         ]
@@ -322,7 +325,7 @@ class Search:
         done = [pilot for pilot in self.pilots.done if pilot.ok]
         tried = {pilot.choice.rung for pilot in self.pilots.done}
         errors = self.observed()
-        poor = [pilot.choice.rung for pilot in done if errors[pilot.choice] > ACCEPT * self.tol]
+        poor = [pilot.choice.rung for pilot in done if errors[pilot.choice] > self.allowance]
         for family in self.families:
             guess = self._guess(family)
             for rung in self._below(family):
@@ -332,7 +335,7 @@ class Search:
                 cost = self.predict(rung)
                 if cost is None or cost > _WORTH * limit or cost > self.pilots.left:
                     continue
-                likely = 1.0 / (1.0 + ((guess(rung) + self.own) / (ACCEPT * self.tol)) ** 4)
+                likely = 1.0 / (1.0 + ((guess(rung) + self.own) / (self.allowance)) ** 4)
                 saving = likely * (1.0 - cost / limit if np.isfinite(limit) else 1.0)
                 if likely > _LIKELY and (found is None or saving > found[0]):
                     found = saving, rung

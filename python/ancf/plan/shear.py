@@ -46,6 +46,7 @@ def told(model: Model, tol: float) -> list[str]:
     if worst <= tol / 2:
         return []
     return [
-        f"Errors are those of thin plates: shear through the thickness, which these leave out, may add about {worst:.1g}. "
+        "Errors are those of thin plates: shear through the thickness, which they leave out, "
+        f"may add about {worst:.1g}. "
         "full48a and full48b have it, but converge to a limit that is too stiff, so that they are not on the ladder."
     ]
