@@ -10,7 +10,7 @@ use ancf_core::model::{Course, Fix, History, Load, LoadKind, Plate, SupportMotio
 use ancf_core::strain::CurvatureLaw;
 use ancf_core::{Damping, InputError, Material, model};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::PyMemoryError;
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -346,6 +346,18 @@ impl Model {
             }
         })?;
         Ok((vector(py, rows), vector(py, columns), vector(py, values)))
+    }
+
+    fn factorize(&self) -> PyResult<usize> {
+        let inertia = self.with_system(System::factorize)?;
+        inertia.map(|inertia| inertia.negative).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    }
+
+    fn solve<'py>(&self, py: Python<'py>, right: PyReadonlyArray1<'_, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let right = coordinates(py, "right", &right, self.coordinates())?;
+        let mut solution = vec![0.0; right.len()];
+        self.with_system(|system| system.solve(&right, &mut solution))?;
+        Ok(vector(py, solution))
     }
 
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Triplets<'py>> {

@@ -72,5 +72,5 @@ fn tables(middle: [Polynomial; 16], sides: [f64; 2], thickness: f64) -> Tables<1
         (shape, weight)
     });
     let mass = mass.collect();
-    Tables { sides, functions: middle, groups: vec![Group::Solid(Samples::new(rows, weights))], mass }
+    Tables { sides, functions: middle, groups: vec![Group::Solid(Samples::new(Rule::Gauss(4), rows, weights))], mass }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::InputError;
 use crate::mesh::SurfacePoint;
-use crate::shape::{acm, hermite};
+use crate::shape::{acm, bilinear, hermite};
 use crate::strain::CurvatureLaw;
 
 use super::block::{Block, ElementBlock};
@@ -69,6 +69,25 @@ impl Kind {
             Self::Full48a => derivative(&quartic_middle(sides), sides, orders, at).to_vec(),
             Self::Full48b => derivative(&hermite_middle(sides), sides, orders, at).to_vec(),
         }
+    }
+
+    /// The shape functions of the vector that a moment about an edge turns, at a point `(xi, eta)` of the edge; `across`
+    /// is the parameter that is constant there.
+    ///
+    /// It is what the nodal vectors of the edge itself tell: the gradient across it, and in a solid `r_z`, which
+    /// tractions do work on that are linear over the thickness. Of `thin36` that is the linear part of the gradient.
+    /// The rest depends on the far nodes and is the same on opposite edges of an element, so that constant moments
+    /// inside do no work on it; if those on the edge did, plates would bend too far.
+    pub(crate) fn edge_director(self, sides: [f64; 2], across: usize, at: [f64; 2]) -> Vec<f64> {
+        let turned = match self {
+            Self::Thin48 => return self.shape_functions(sides, if across == 0 { [1, 0] } else { [0, 1] }, at),
+            Self::Thin36 => 1 + across,
+            Self::Full48a | Self::Full48b => 3,
+        };
+        let mut table = vec![0.0; 4 * self.nodal_vectors().len()];
+        let corners = derivative(&bilinear(), sides, [0, 0], at);
+        table.iter_mut().skip(turned).step_by(self.nodal_vectors().len()).zip(corners).for_each(|(t, n)| *t = n);
+        table
     }
 
     /// The derivatives of the shape functions of a solid's vector through the thickness, as
