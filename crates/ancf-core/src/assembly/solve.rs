@@ -28,6 +28,12 @@ impl System {
         &self.tangent_at
     }
 
+    /// Subtracts the skew half of a tangent, that of loads which follow the body, times `x` from `y`; `at` is its
+    /// [`tangent_at`](Self::tangent_at).
+    pub(crate) fn subtract_skew_times(&self, at: &(Vec<f64>, Vec<f64>), x: &[f64], y: &mut [f64]) {
+        self.loads.subtract_skew_times(&self.blocks, self.model.reference(), at, x, y);
+    }
+
     /// Factorises a tangent that was assembled earlier.
     ///
     /// # Errors

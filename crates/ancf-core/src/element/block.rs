@@ -92,6 +92,9 @@ pub trait ElementBlock: Send + Sync {
     fn weight(&self, element: usize) -> &[f64];
     /// Number of different reference shapes among the elements.
     fn classes(&self) -> usize;
+    /// Memory of the elements, bytes: the numbers of their nodal vectors and of their classes, and the constants of each
+    /// class; without the shape tables, which they all share.
+    fn bytes(&self) -> usize;
     /// Mass-proportional and viscous damping.
     fn damping(&self) -> Damping;
     /// Floating-point operations of an element.
@@ -186,6 +189,13 @@ impl<const N: usize> ElementBlock for Block<N> {
 
     fn classes(&self) -> usize {
         self.classes.len()
+    }
+
+    fn bytes(&self) -> usize {
+        let numbers = |class: &Constants| class.values.len() + class.mass.len() + class.weight.len();
+        size_of_val(self.vectors.as_slice())
+            + size_of_val(self.class_of.as_slice())
+            + size_of::<f64>() * self.classes.iter().map(numbers).sum::<usize>()
     }
 
     fn derivative(&self, orders: [usize; 2], point: [f64; 2]) -> Vec<f64> {

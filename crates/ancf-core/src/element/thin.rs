@@ -34,7 +34,7 @@ impl Membrane {
     }
 
     /// The rules for membrane strain and curvature.
-    fn rules(self) -> (Rule, Rule) {
+    pub(crate) fn rules(self) -> (Rule, Rule) {
         match self {
             Self::Projected | Self::Full => (Rule::Gauss(4), Rule::Gauss(3)),
             Self::Lobatto => (Rule::Lobatto3, Rule::Gauss(2)),
