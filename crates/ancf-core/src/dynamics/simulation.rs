@@ -8,6 +8,7 @@ use super::Options;
 use super::checkpoint::{Checkpoint, Tangent};
 use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
+use super::fingerprint::Fingerprint;
 use super::method::Integrator;
 use super::stability::highest_frequency;
 use super::state::Instantaneous;
@@ -81,7 +82,7 @@ impl<'a> Simulation<'a> {
         let zeros = vec![0.0; q.len()];
         let v = self.options.velocity.clone().unwrap_or_else(|| zeros.clone());
         self.now = Instantaneous { q, v, a: zeros.clone(), external: zeros, ..Instantaneous::default() };
-        self.equations.accelerate(&mut self.now)?;
+        self.integrator.begin(&mut self.equations, &mut self.now)?;
         self.next = self.now.clone();
         self.check_limit()?;
         self.controller = Controller::new(match self.options.steps {
@@ -245,6 +246,7 @@ impl<'a> Simulation<'a> {
     fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             method: self.options.method.name().to_owned(),
+            fingerprint: Fingerprint::of(self.equations.system.model(), self.options),
             now: self.now.clone(),
             controller: self.controller,
             tangent: self.tangent.clone(),
