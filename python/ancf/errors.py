@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Self
 from ancf import _core
 
 if TYPE_CHECKING:
+    from ancf.modal import ModalResult
     from ancf.result import Result
 
 Path = tuple[str | int, ...]
@@ -125,11 +126,11 @@ def from_core(*path: str | int) -> Iterator[None]:
 class _WithResult(BaseException):
     """What happened, and what the run had by then."""
 
-    def __init__(self, message: str, result: Result) -> None:
+    def __init__(self, message: str, result: Result | ModalResult) -> None:
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self) -> tuple[type[Self], tuple[str, Result]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[str, Result | ModalResult]]:
         return type(self), (str(self), self.result)
 
 
@@ -140,7 +141,7 @@ class SolveError(_WithResult, RuntimeError):
     ----------
     message : str
         Where it failed, why, and what to try.
-    result : Result
+    result : Result or ModalResult
         Every state up to the last good one.
     """
 
@@ -152,6 +153,6 @@ class Interrupted(_WithResult, KeyboardInterrupt):
     ----------
     message : str
         Where it stopped.
-    result : Result
+    result : Result or ModalResult
         Every state up to there.
     """

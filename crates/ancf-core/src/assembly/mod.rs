@@ -112,6 +112,11 @@ impl System {
         self.blocks.iter().map(|block| block.classes()).sum()
     }
 
+    /// Memory of all elements, bytes: see [`ElementBlock::bytes`].
+    pub fn element_bytes(&self) -> usize {
+        self.blocks.iter().map(|block| block.bytes()).sum()
+    }
+
     /// Number of numeric factorisations so far.
     pub fn factorizations(&self) -> usize {
         self.factorizations

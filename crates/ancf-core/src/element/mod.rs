@@ -14,6 +14,8 @@ mod corners;
 mod full48;
 mod kernel;
 mod kind;
+mod moments;
+mod patch;
 mod projected;
 mod projection;
 mod tables;

@@ -49,8 +49,29 @@ pub trait Measure<S: Simd, const D: usize, const C: usize>: Copy {
     fn forces(&self, stress: [Lanes<S>; C]) -> [Vector<S>; D];
 
     /// The second derivative of `1/2 strain . weight strain` with respect to the gradient vectors, where `stress` stands
-    /// for `weight strain`: the block of the vectors `d <= e` goes to `form[d * D + e]`.
-    fn stiffness(&self, weight: &[[Lanes<S>; C]; C], stress: [Lanes<S>; C], form: &mut [Block<S>]);
+    /// for `weight strain`: a block for each pair of vectors `d <= e`.
+    fn stiffness(&self, weight: &[[Lanes<S>; C]; C], stress: [Lanes<S>; C], form: Form<'_, S>);
+}
+
+/// The stiffness of one of several points, kept pair by pair of gradient vectors, the points side by side.
+pub struct Form<'a, S: Simd> {
+    blocks: &'a mut [Block<S>],
+    points: usize,
+    point: usize,
+}
+
+impl<'a, S: Simd> Form<'a, S> {
+    /// The place for `point` in `blocks`, which are those of so many points.
+    #[inline(always)]
+    pub fn new(blocks: &'a mut [Block<S>], points: usize, point: usize) -> Self {
+        Self { blocks, points, point }
+    }
+
+    /// Sets the block of the gradient vectors `d <= e`.
+    #[inline(always)]
+    fn set(&mut self, d: usize, e: usize, block: Block<S>) {
+        self.blocks[packed(d, e) * self.points + self.point] = block;
+    }
 }
 
 /// `a b^T + block`.
