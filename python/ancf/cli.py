@@ -6,10 +6,10 @@ import argparse
 import signal
 from collections.abc import Sequence
 
-from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, complain, info, run
+from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, run
 from ancf.errors import InputError
 
-_COMMANDS = (run, info)
+_COMMANDS = (run, chart, info)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
