@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 import ancf
 from ancf import _core, reference
 from ancf.reference.loads import History
-from ancf.reference.thin36 import CurvatureKind, MembraneRule
+from ancf.reference.thin import CurvatureKind, MembraneRule
 
 FloatArray = NDArray[np.float64]
 Pair = tuple[_core.Model, reference.Model]

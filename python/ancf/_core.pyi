@@ -16,7 +16,7 @@ _IndexArray: TypeAlias = NDArray[np.uint64]
 _At: TypeAlias = str | tuple[float, float]
 _History: TypeAlias = str | Sequence[tuple[float, float]]
 
-__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "info", "simulate", "solve_static"]
+__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "info", "modes", "simulate", "solve_static"]
 
 __version__: str
 
@@ -186,4 +186,13 @@ def simulate(
     threads: int | None,
     progress: Callable[[float], Any] | None,
 ) -> Run: ...
+def modes(
+    model: Model,
+    *,
+    count: int,
+    q: _FloatArray,  # (n,) the state about which the model oscillates
+    load_factor: float,  # of loads that follow the body
+    threads: int | None,
+    progress: Callable[[float], Any] | None,  # called with the number of modes found
+) -> tuple[Run, _FloatArray, _FloatArray]: ...  # (modes,) eigenvalues, 1/s2; (modes, n) shapes, x . M x = 1
 def info() -> dict[str, str]: ...  # versions of ancf-core and faer, threads, CPU features, SIMD lanes

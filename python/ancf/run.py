@@ -22,7 +22,7 @@ _INTERVALS = 100
 _MOST_OUTPUTS = 1_000_000
 
 Method: TypeAlias = Literal[
-    "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk"
+    "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk", "rigid"
 ]
 ProgressCall: TypeAlias = Callable[[float], Any] | None
 
@@ -157,7 +157,7 @@ class Dynamic(_Run):
     method : str, default "hht"
         Implicit of order 2: "hht" (HHT-alpha), "generalized_alpha", "newmark" (trapezoidal rule), "tr_bdf2" (L-stable)
         and "energy_momentum" (keeps energy and momenta). Of order 4: "esdirk" (L-stable). Explicit: "verlet" of order
-        2, "rk" (Dormand and Prince) of order 5.
+        2, "rk" (Dormand and Prince) of order 5. "rigid", of order 5: no body deforms.
     alpha : float, optional
         Of "hht", from -1/3 to 0; -0.05 if left out.
     rho_inf : float, optional

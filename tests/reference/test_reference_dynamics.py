@@ -5,7 +5,7 @@ import pytest
 from scipy.linalg import eigh
 
 from ancf.reference import GeneralizedAlpha, Model, RectangleMesh, simulate
-from ancf.reference.thin36 import MembraneRule
+from ancf.reference.thin import MembraneRule
 
 METHODS = [
     GeneralizedAlpha.hht(0.0),

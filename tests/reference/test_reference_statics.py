@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ancf.reference import Model, NewtonError, NewtonOptions, RectangleMesh, negative_eigenvalues, solve_static
-from ancf.reference.thin36 import CurvatureKind, MembraneRule
+from ancf.reference.thin import CurvatureKind, MembraneRule
 
 TEN_STEPS = list(np.linspace(0.1, 1, 10))
 

@@ -25,7 +25,7 @@ pub(super) struct Tableau {
 
 /// An error of the velocity goes on to move positions. It is counted with what it has done after so many steps: enough
 /// that plates of rubber and of steel keep the tolerances in `tests/control.rs`.
-const CARRIED: f64 = 4.0;
+pub(super) const CARRIED: f64 = 4.0;
 
 impl Tableau {
     /// Where each stage lies in the step, from 0 to 1.

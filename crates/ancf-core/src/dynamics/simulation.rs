@@ -81,7 +81,7 @@ impl<'a> Simulation<'a> {
         let zeros = vec![0.0; q.len()];
         let v = self.options.velocity.clone().unwrap_or_else(|| zeros.clone());
         self.now = Instantaneous { q, v, a: zeros.clone(), external: zeros, ..Instantaneous::default() };
-        self.equations.accelerate(&mut self.now)?;
+        self.integrator.begin(&mut self.equations, &mut self.now)?;
         self.next = self.now.clone();
         self.check_limit()?;
         self.controller = Controller::new(match self.options.steps {

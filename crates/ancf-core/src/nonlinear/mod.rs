@@ -1,12 +1,17 @@
 //! The one nonlinear problem behind statics and every implicit integrator:
 //! `c M (q - q*) + k (Q_k(q) - Q_e(t, q)) + p = 0`.
 
+mod convergence;
 mod failure;
+mod forces;
 mod newton;
+mod options;
+mod scale;
 
 pub use failure::Failure;
 pub(crate) use newton::Kept;
-pub use newton::{Newton, Options, Report, Variant};
+pub use newton::{Newton, Report};
+pub use options::{Options, Variant};
 
 /// The coefficients of the problem.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,6 +39,13 @@ pub struct Problem<'a> {
     ///
     /// Simo and Tarnow (1994); Gonzalez (1996), discrete gradients; Laursen and Meng (2001), the correction of the stress.
     pub start: Option<&'a [f64]>,
+}
+
+impl Problem<'_> {
+    /// What the tangent depends on beside the state: the factors of inertia and stiffness, and the rate of the velocities.
+    fn coefficients(&self) -> [f64; 3] {
+        [self.mass, self.stiffness, self.velocity.map_or(0.0, |velocity| velocity.rate)]
+    }
 }
 
 /// Velocities as a function of the coordinates: `v = rate (q - still)`.

@@ -1,58 +1,12 @@
-//! Newton's method, plain and with mixed integration points.
+//! Newton's method: plain, with mixed integration points, and modified.
 
-use crate::assembly::{StrainRates, System};
-use crate::element::{At, Motion, Want};
-use crate::error::InputError;
+use crate::assembly::System;
 use crate::observe::Observer;
 
-use super::{Failure, Problem, Velocity};
-
-/// Which tangent Newton's method uses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Variant {
-    /// The geometric stiffness is that of the stress extrapolated from the last iterate: far fewer iterations in thin
-    /// structures, the same solution.
-    ///
-    /// # Source
-    ///
-    /// Magisano, Leonetti and Garcea (2017), mixed integration points.
-    #[default]
-    MixedIntegrationPoint,
-    /// The consistent tangent.
-    Plain,
-}
-
-/// Settings of Newton's method.
-#[derive(Clone, Copy, Debug)]
-pub struct Options {
-    /// Which tangent.
-    pub variant: Variant,
-    /// Largest correction of a converged iteration, relative to the size of the model.
-    pub tolerance: f64,
-    /// Iterations after which a step has failed.
-    pub max_iterations: usize,
-    /// Whether a factorisation is kept, over iterations and time steps, while it converges fast (modified Newton).
-    pub reuse: bool,
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self { variant: Variant::default(), tolerance: 1e-8, max_iterations: 30, reuse: false }
-    }
-}
-
-impl Options {
-    /// Checks the numbers.
-    ///
-    /// # Errors
-    ///
-    /// The tolerance must lie between the rounding of numbers and one, the iterations must be at least one.
-    pub fn validate(&self) -> Result<(), InputError> {
-        let tolerance = self.tolerance;
-        InputError::check("tolerance", tolerance, (1e-15..1.0).contains(&tolerance), "from 1e-15 to below 1")?;
-        InputError::check("max_iterations", self.max_iterations, self.max_iterations > 0, "a whole number from 1")
-    }
-}
+use super::convergence::Convergence;
+use super::forces::{Forces, Tangent};
+use super::scale::scales;
+use super::{Failure, Options, Problem, Variant};
 
 /// How a solution was found.
 #[derive(Clone, Copy, Debug)]
@@ -74,13 +28,11 @@ pub struct Report {
 pub struct Newton {
     options: Options,
     scale: Vec<f64>,
-    internal: Vec<f64>,
-    external: Vec<f64>,
-    residual: Vec<f64>,
+    forces: Forces,
     correction: Vec<f64>,
+    /// Coordinates from which the stress is extrapolated.
     previous: Vec<f64>,
-    offset: Vec<f64>,
-    velocity: Vec<f64>,
+    /// Coordinates at the start.
     begin: Vec<f64>,
     kept: Option<Kept>,
     iterations: usize,
@@ -95,34 +47,17 @@ pub(crate) struct Kept {
     pub negative: usize,
 }
 
-/// A correction this many times the size of the model cannot lead anywhere.
-const ABSURD: f64 = 1e3;
-/// Corrections below this that no longer shrink are rounding.
-const ROUNDING: f64 = 1e-6;
-/// Iterations without progress after which there will be none.
-const HOPELESS: usize = 6;
-/// The energy of a correction, relative to the first one, that goes with convergence.
-const ENERGY: f64 = 1e-6;
-/// A kept factorisation must shrink the corrections by this factor.
-const CONTRACTION: f64 = 0.2;
-/// The correction of the mean stress stays below this share of the stress that a step adds.
-const MOST_CORRECTION: f64 = 0.25;
-
 impl Newton {
     /// A solver for the equations of `system`.
     pub fn new(system: &System, options: Options) -> Self {
-        let zeros = || vec![0.0; system.coordinates()];
+        let n = system.coordinates();
         Self {
             options,
             scale: scales(system),
-            internal: zeros(),
-            external: zeros(),
-            residual: zeros(),
-            correction: zeros(),
-            previous: zeros(),
-            offset: zeros(),
-            velocity: zeros(),
-            begin: zeros(),
+            forces: Forces::new(n),
+            correction: vec![0.0; n],
+            previous: vec![0.0; n],
+            begin: vec![0.0; n],
             kept: None,
             iterations: 0,
         }
@@ -210,195 +145,78 @@ impl Newton {
         }
         self.begin.copy_from_slice(q);
         let begin = problem.t;
-        let rate = problem.velocity.map_or(0.0, |velocity| velocity.rate);
-        let coefficients = [problem.mass, problem.stiffness, rate];
+        let coefficients = problem.coefficients();
         self.kept = self.kept.filter(|kept| reuse && kept.coefficients == coefficients);
-        let mut viscosity = 0.0;
-        let mut first_energy = f64::NAN;
-        let mut smallest = f64::INFINITY;
-        let mut stalled = 0;
-        let mut small = false;
-        let mut growth: f64 = 0.0;
-        let mut size = f64::INFINITY;
+        self.forces.begin();
+        let mut convergence = Convergence::new(tolerance);
         for iteration in 1..=max_iterations {
             if observer.stop() {
                 return Err(Failure::Stopped);
             }
             self.iterations += 1;
-            let mut motion = None;
-            if let Some(Velocity { rate, still }) = problem.velocity {
-                for i in 0..q.len() {
-                    self.velocity[i] = rate * (q[i] - still[i]);
-                }
-                motion = Some(Motion { velocity: &self.velocity, rate, viscosity });
-            }
-            let at = At { q, start: problem.start, motion };
             let fresh = self.kept.is_none();
-            let strain = if fresh {
-                let previous = extrapolate.then_some(self.previous.as_slice());
-                let want = Want { mass: problem.mass, stiffness: problem.stiffness, previous };
-                system.assemble_at(at, problem.t, want, &mut self.internal)
-            } else {
-                system.force(at, &mut self.internal)
-            };
-            if problem.start.is_some() {
-                viscosity = conserving_viscosity(system.strain_rates(), rate);
-            }
-            self.form_residual(system, &problem, q);
-            let finite = self.residual.iter().all(|r| r.is_finite());
+            let tangent = fresh.then_some(Tangent { previous: extrapolate.then_some(self.previous.as_slice()) });
+            let strain = self.forces.evaluate(system, &problem, q, tangent);
+            let finite = self.forces.residual.iter().all(|r| r.is_finite());
             if fresh && !finite {
                 return Err(Failure::NotFinite { iteration });
             }
-            let negative = match self.kept {
-                Some(kept) => kept.negative,
-                None => {
-                    let inertia = system
-                        .factorize()
-                        .map_err(|e| Failure::from_linear(e, iteration, |row| system.describe(row)))?;
-                    inertia.negative
-                }
+            let factorize = |system: &mut System| match system.factorize() {
+                Ok(inertia) => Ok(inertia.negative),
+                Err(error) => Err(Failure::from_linear(error, iteration, |row| system.describe(row))),
             };
-            let last_size = size;
+            let negative = self.kept.map_or_else(|| factorize(system), |kept| Ok(kept.negative))?;
+            let mut size = f64::INFINITY;
             if finite {
-                system.solve(&self.residual, &mut self.correction);
+                system.solve(&self.forces.residual, &mut self.correction);
                 if let Some(normal) = normal {
-                    problem.t += self.stay_in_plane(system, normal, q, problem.t);
+                    problem.t += stay_in_plane(system, normal, q, problem.t, &mut self.correction);
                 }
                 size = self.correction.iter().zip(&self.scale).map(|(d, s)| d.abs() / s).fold(0.0, nan_max);
             }
-            let leads_on = finite && size <= 2.0 * last_size;
-            if !(fresh || leads_on) {
+            if !(fresh || finite && convergence.leads_on(size)) {
                 // The old factorisation leads away: back to the start with a new one.
                 q.copy_from_slice(&self.begin);
                 problem.t = begin;
-                (self.kept, extrapolate, size) = (None, false, f64::INFINITY);
+                (self.kept, extrapolate) = (None, false);
+                convergence.restart();
                 continue;
             }
-            if size > ROUNDING {
-                growth = growth.max(size / last_size);
-            }
-            if !size.is_finite() {
-                return Err(Failure::NotFinite { iteration });
-            }
-            if size > ABSURD {
-                return Err(Failure::Diverged { iteration, correction: size });
-            }
+            let useful = fresh || convergence.contracts(size);
+            let converged = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
             self.previous.copy_from_slice(q);
             for (q, d) in q.iter_mut().zip(&self.correction) {
                 *q -= d;
             }
             extrapolate = mip;
-            let useful = fresh || size <= CONTRACTION * last_size;
             self.kept = (reuse && useful).then_some(Kept { coefficients, negative });
-
-            let energy = self.correction.iter().zip(&self.residual).map(|(d, r)| d * r).sum::<f64>().abs();
-            if first_energy.is_nan() {
-                first_energy = energy;
-            }
-            // Where the start is almost the solution the first energy is rounding; then two small corrections settle it.
-            let settled = energy <= ENERGY * first_energy || small;
-            small = size <= tolerance;
-            if small && settled {
+            if converged {
                 // The energy was evaluated one correction before the solution.
-                let change: f64 = self.correction.iter().zip(&self.internal).map(|(d, f)| d * f).sum();
-                let energy = strain.total() - change;
+                let energy = strain.total() - dot(&self.correction, &self.forces.internal);
+                let growth = convergence.growth;
                 return Ok(Report { t: problem.t, iterations: iteration, growth, negative_pivots: negative, energy });
             }
-            stalled = if size < 0.5 * smallest { 0 } else { stalled + 1 };
-            smallest = smallest.min(size);
-            if smallest < ROUNDING && stalled >= 4 {
-                return Err(Failure::BelowRounding { floor: smallest, tolerance });
-            }
-            if stalled >= HOPELESS {
-                return Err(Failure::NotConverged { iterations: iteration, correction: size });
-            }
         }
-        Err(Failure::NotConverged { iterations: max_iterations, correction: size })
+        Err(Failure::NotConverged { iterations: max_iterations, correction: convergence.size })
     }
+}
 
-    /// Changes the correction so that it keeps the coordinates in the plane with the given normal, and returns the change
-    /// of the load factor that this takes.
-    fn stay_in_plane(&mut self, system: &mut System, normal: &[f64], q: &[f64], t: f64) -> f64 {
-        system.external_force_rate(q, t, &mut self.external);
-        system.solve(&self.external, &mut self.offset);
-        let along = |x: &[f64]| normal.iter().zip(x).map(|(n, x)| n * x).sum::<f64>();
-        let change = along(&self.correction) / along(&self.offset);
-        self.correction.iter_mut().zip(&self.offset).for_each(|(c, v)| *c -= change * v);
-        change
-    }
+/// Changes a correction so that it keeps the coordinates in the plane with the given normal, and returns the change of the
+/// load factor that this takes.
+fn stay_in_plane(system: &mut System, normal: &[f64], q: &[f64], t: f64, correction: &mut [f64]) -> f64 {
+    let [mut force, mut rate] = [vec![0.0; q.len()], vec![0.0; q.len()]];
+    system.external_force_rate(q, t, &mut force);
+    system.solve(&force, &mut rate);
+    let change = dot(normal, correction) / dot(normal, &rate);
+    correction.iter_mut().zip(&rate).for_each(|(c, v)| *c -= change * v);
+    change
+}
 
-    /// `residual = c M (q - q*) + k (Q_k - Q_e + damping) + p`.
-    fn form_residual(&mut self, system: &System, problem: &Problem<'_>, q: &[f64]) {
-        let Problem { t, mass, stiffness, origin, constant, velocity, start } = *problem;
-        // Loads act on the mean configuration where forces are means.
-        self.offset.copy_from_slice(q);
-        if let Some(start) = start {
-            for (mean, start) in self.offset.iter_mut().zip(start) {
-                *mean = 0.5 * (*mean + start);
-            }
-        }
-        system.external_force(&self.offset, t, &mut self.external);
-        for i in 0..q.len() {
-            self.residual[i] = stiffness * (self.internal[i] - self.external[i]) + constant.map_or(0.0, |p| p[i]);
-        }
-        if mass != 0.0 {
-            for i in 0..q.len() {
-                self.offset[i] = mass * (q[i] - origin[i]);
-            }
-            if let (Some(damping), true) = (system.mass_damping(), velocity.is_some()) {
-                for i in 0..q.len() {
-                    self.offset[i] += stiffness * damping[i / 3] * self.velocity[i];
-                }
-            }
-            system.add_mass_times(&self.offset, &mut self.residual);
-        }
-    }
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The larger of two numbers; NaN if either is.
 fn nan_max(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }
-}
-
-/// The viscosity whose power over a step makes up for the energy that mean forces miss; `rate` is the inverse of the
-/// step.
-fn conserving_viscosity(rates: StrainRates, rate: f64) -> f64 {
-    if rates.square == 0.0 {
-        return 0.0;
-    }
-    let most = MOST_CORRECTION / rate;
-    (rates.missed * rate / rates.square).clamp(-most, most)
-}
-
-/// The size that a correction of each coordinate is compared with: the extent of the body for positions, and what
-/// moves a position by as much for gradients.
-fn scales(system: &System) -> Vec<f64> {
-    let model = system.model();
-    let mut scale = vec![1.0; system.coordinates()];
-    for body in model.bodies() {
-        let extent = extent(body, model.reference());
-        let ranges = body.grid().domain().map(|[from, to]| to - from);
-        for node in 0..body.grid().nodes() {
-            for (index, vector) in body.nodal_vectors().iter().enumerate() {
-                // A vector through the thickness only turns with the body.
-                let size = vector.orders().map_or(1.0, |(dx, dy)| extent / (ranges[0].powi(dx) * ranges[1].powi(dy)));
-                let v = body.vector(node, index);
-                scale[3 * v..3 * v + 3].fill(size);
-            }
-        }
-    }
-    scale
-}
-
-/// Diagonal of the box around a body at rest.
-fn extent(body: &crate::model::Body, reference: &[f64]) -> f64 {
-    let positions = (0..body.grid().nodes()).map(|node| &reference[3 * body.vector(node, 0)..][..3]);
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for r in positions {
-        for c in 0..3 {
-            low[c] = low[c].min(r[c]);
-            high[c] = high[c].max(r[c]);
-        }
-    }
-    (0..3).map(|c| (high[c] - low[c]).powi(2)).sum::<f64>().sqrt()
 }

@@ -16,7 +16,7 @@ const LAYERS: [&[&str]; 9] = [
     &["evaluate", "observe"],
     &["nonlinear"],
     &["report"],
-    &["statics", "dynamics"],
+    &["statics", "dynamics", "modes"],
 ];
 
 /// All source files of the crate with their lines, comments left out.
