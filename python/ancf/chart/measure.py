@@ -7,6 +7,7 @@ import time
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ancf.chart.axes import Axes, grid, with_few_outputs
 from ancf.chart.labels import Label
@@ -183,20 +184,15 @@ class Plan:
         """Run all of it and return what there is time for, under the digests of the variants."""
         among = self.candidates
         first = [among.first, among.other, among.coarser]
-        found = _found([*first, *self.runs], log, limit, budget, executor, "errors " if progress else None)
+        runs, how = [*first, *self.runs], {"limit": limit, "executor": executor}
+        found = _found(runs, log, "errors " if progress else None, budget=budget, **how)
         if among.first.digest not in found or found[among.first.digest].status != "ok":
             spare = [among.spare, among.spare_coarser]
-            found |= _found(spare, log, limit, None, executor, "reference " if progress else None)
+            found |= _found(spare, log, "reference " if progress else None, **how)
         return found
 
 
-def _found(
-    variants: list[Variant],
-    log: Path,
-    limit: float,
-    budget: float | None,
-    executor: Executor | None,
-    progress: str | None,
-) -> dict[str, Outcome]:
-    outcomes = sweep(variants, log, limit=limit, budget=budget, executor=executor, progress=progress)
+def _found(variants: list[Variant], log: Path, progress: str | None, **how: Any) -> dict[str, Outcome]:
+    """Return the outcomes that there are under the digests of the variants."""
+    outcomes = sweep(variants, log, progress=progress, **how)
     return {variant.digest: found for variant, found in zip(variants, outcomes, strict=True) if found is not None}

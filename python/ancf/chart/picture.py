@@ -4,24 +4,30 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
+from textwrap import wrap
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from ancf.chart.measure import Chart
-from ancf.chart.points import LEVELS, Point, front, percent, winners
+from ancf.chart.points import LEVELS, Point, Winner, front, percent, winners
 
 PALETTE = ("#0b6bcb", "#d1495b", "#2a9d5c", "#8e5ea2", "#e08e0b", "#1aa6b7", "#7a6a58", "#b0489a")
 """Colours of elements."""
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
-_INK, _SOFT = "#1c2430", "#5d6b7c"
+_INK, _SOFT, _GOLD = "#1c2430", "#5d6b7c", "#ffc53d"
 _LEAST = 1e-6
 """Smaller errors, of a run against itself, are drawn there."""
 
+_COUNTS = {"factorizations": "factorisations", "forces": "force evaluations"}
+
 Value = Callable[[Point], float]
+Panel = Callable[[Axes, Chart, "Style"], None]
 
 
 def draw(chart: Chart) -> Figure:
@@ -48,17 +54,14 @@ def _draw(chart: Chart) -> Figure:
     figure.suptitle(f"{title}: what accuracy costs", fontsize=17, color=_INK, x=0.01, ha="left")
     grid = figure.add_gridspec(2, 4, width_ratios=(1, 1, 1, 1), height_ratios=(1.65, 1))
     _draw_main(figure.add_subplot(grid[0, :3]), chart, style)
-    _draw_legend(figure.add_subplot(grid[0, 3]), style)
-    bottom = [figure.add_subplot(grid[1, column]) for column in range(4)]
-    _draw_space(bottom[0], chart, style)
-    _draw_time(bottom[1], chart, style)
-    _draw_counts(bottom[2], chart, style, "factorizations", "factorisations")
-    _draw_counts(bottom[3], chart, style, "iterations" if _no_forces(chart) else "forces", "force evaluations")
+    _draw_legend(figure.add_subplot(grid[0, 3]), chart, style)
+    panels: list[Panel] = [_draw_space, _draw_time, partial(_draw_counts, "factorizations"), partial(_draw_counts, "forces")]
+    if not any(point.time > 0 for point in chart.points):
+        panels.remove(_draw_time)
+    below = grid[1, :].subgridspec(1, len(panels))
+    for column, panel in enumerate(panels):
+        panel(figure.add_subplot(below[column]), chart, style)
     return figure
-
-
-def _no_forces(chart: Chart) -> bool:
-    return not any("forces" in point.counts for point in chart.points)
 
 
 class Style:
@@ -117,12 +120,12 @@ def _draw_main(axes: Axes, chart: Chart, style: Style) -> None:
     if not math.isnan(chart.reference.trust):
         axes.axhspan(bottom * 0.5, chart.reference.trust, color="#8a93a0", alpha=0.13, linewidth=0, zorder=0)
         axes.text(
-            1.0,
-            chart.reference.trust,
-            f"the reference is known to {percent(chart.reference.trust)} ",
+            0.005,
+            chart.reference.trust * 0.97,
+            f"the reference is known to {percent(chart.reference.trust)}",
             transform=axes.get_yaxis_transform(),
-            ha="right",
-            va="bottom",
+            ha="left",
+            va="top",
             color=_SOFT,
             fontsize=9,
         )
@@ -132,36 +135,34 @@ def _draw_main(axes: Axes, chart: Chart, style: Style) -> None:
             _mark_winner(axes, winner.point, winner.level)
     for own in (point for point in chart.points if point.own):
         axes.scatter(own.timing.best, own.error, s=260, facecolors="none", edgecolors=_INK, linewidths=1.4, zorder=4)
-        _note(axes, own, "the scene as it is", (14, -16))
     for level in LEVELS:
         axes.axhline(level, color=_SOFT, linewidth=0.7, linestyle=(0, (4, 4)), zorder=1)
-    _finish(axes, "wall time, one thread / s", "error / size of the motion", percent_scale=True)
+    _finish(axes, "wall time, one thread / s", "error / size of the motion")
     axes.set_title("Error against wall time", loc="left", color=_INK, fontsize=12)
 
 
 def _mark_winner(axes: Axes, point: Point, level: float) -> None:
-    axes.scatter(point.timing.best, point.error, s=230, marker="*", color="#ffc53d", edgecolors=_INK, zorder=5)
-    label = point.label
-    text = f"{percent(level)}: {label.element}, {label.mesh}\n{label.time}, {point.timing.best:.2g} s"
-    _note(axes, point, text, (12, 12))
-
-
-def _note(axes: Axes, point: Point, text: str, offset: tuple[float, float]) -> None:
-    box = {"boxstyle": "round,pad=0.3", "facecolor": "white", "edgecolor": "#dfe4ea", "alpha": 0.92}
+    place = (point.timing.best, max(point.error, _LEAST))
+    axes.scatter(*place, s=260, marker="*", color=_GOLD, edgecolors=_INK, zorder=5)
+    halo = [withStroke(linewidth=3, foreground="white")]
     axes.annotate(
-        text,
-        (point.timing.best, max(point.error, _LEAST)),
-        xytext=offset,
+        percent(level),
+        place,
+        xytext=(-9, -12),
         textcoords="offset points",
-        fontsize=9,
+        ha="right",
+        fontsize=10,
+        weight="bold",
         color=_INK,
-        bbox=box,
+        path_effects=halo,
         zorder=6,
     )
 
 
-def _draw_legend(axes: Axes, style: Style) -> None:
+def _draw_legend(axes: Axes, chart: Chart, style: Style) -> None:
     axes.axis("off")
+    axes.set_xlim(0, 1)
+    axes.set_ylim(0, 1)
     elements = [Line2D([], [], marker="o", linestyle="", color=c, label=name) for name, c in style.elements.items()]
     methods = [
         Line2D([], [], marker=m, linestyle="", color=_SOFT, label=name.replace("_", " "))
@@ -173,10 +174,10 @@ def _draw_legend(axes: Axes, style: Style) -> None:
     ]
     marks = [
         Line2D([], [], color=_INK, linewidth=1.3, label="nothing is faster and more accurate"),
-        Line2D([], [], marker="*", linestyle="", color="#ffc53d", markeredgecolor=_INK, markersize=13, label="winner"),
+        Line2D([], [], marker="o", markersize=14, fillstyle="none", linestyle="", color=_INK, label="scene as it is"),
     ]
     top = 1.0
-    for title, handles in (("element, membrane", elements), ("method", methods), ("elements", meshes), ("", marks)):
+    for title, handles in (("Element, membrane", elements), ("Method", methods), ("Mesh", meshes), ("", marks)):
         rows = len(handles) + bool(title)
         legend = axes.legend(
             handles=handles, title=title or None, loc="upper left", bbox_to_anchor=(0.0, top), frameon=False
@@ -184,7 +185,18 @@ def _draw_legend(axes: Axes, style: Style) -> None:
         legend.set_alignment("left")
         legend.get_title().set_fontweight("bold")
         axes.add_artist(legend)
-        top -= 0.047 * rows + 0.035
+        top -= 0.038 * rows + 0.028
+    for winner in winners(chart.points, chart.reference.trust):
+        axes.text(0.02, top, f"{percent(winner.level)}:", weight="bold", color=_INK, va="top", fontsize=9)
+        axes.text(0.17, top, _told(winner), color=_INK, va="top", fontsize=9, linespacing=1.25)
+        top -= 0.085
+
+
+def _told(winner: Winner) -> str:
+    if winner.point is None:
+        return "\n".join(wrap(winner.remark, 40))
+    label = winner.point.label
+    return f"{label.space}\n{label.time}: {winner.point.timing.best:.2g} s"
 
 
 def _draw_space(axes: Axes, chart: Chart, style: Style) -> None:
@@ -197,42 +209,43 @@ def _draw_space(axes: Axes, chart: Chart, style: Style) -> None:
         axes.plot(numbers, [values[n] for n in numbers], "o-", color=style.elements[name], markersize=5, linewidth=1.3)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    _finish(axes, "elements", "error / size of the motion", percent_scale=True)
+    _finish(axes, "elements", "error / size of the motion")
     axes.set_title("Error in space: element and mesh", loc="left", color=_INK, fontsize=11)
 
 
 def _draw_time(axes: Axes, chart: Chart, style: Style) -> None:
     points = [point for point in chart.points if point.time > 0]
-    if points:
-        style.scatter(axes, points, _seconds, lambda point: point.time, scale=0.5)
-        axes.set_xscale("log")
-        axes.set_yscale("log")
-        _finish(axes, "wall time / s", "", percent_scale=True)
-    else:
-        axes.axis("off")
-        axes.text(0.5, 0.5, "statics: none", ha="center", color=_SOFT, transform=axes.transAxes)
+    style.scatter(axes, points, _seconds, lambda point: point.time, scale=0.5)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    _finish(axes, "wall time / s", "")
     axes.set_title("Error in time: method and step", loc="left", color=_INK, fontsize=11)
 
 
-def _draw_counts(axes: Axes, chart: Chart, style: Style, key: str, name: str) -> None:
-    style.scatter(axes, chart.points, lambda point: point.counts.get(key, 0), _error, scale=0.5)
-    axes.set_xscale("symlog", linthresh=10)
+def _draw_counts(key: str, axes: Axes, chart: Chart, style: Style) -> None:
+    name = _COUNTS[key]
+    style.scatter(axes, chart.points, lambda point: point.counts[key], _error, scale=0.5)
+    # Explicit methods factorise nothing.
+    explicit = any(point.counts[key] == 0 for point in chart.points)
+    axes.set_xscale("symlog", linthresh=10) if explicit else axes.set_xscale("log")
     axes.set_yscale("log")
-    _finish(axes, name, "", percent_scale=True)
-    axes.set_xlim(left=-2)
+    _finish(axes, name, "")
+    if explicit:
+        axes.set_xlim(left=-1.5)
     axes.set_title(f"Error against {name}", loc="left", color=_INK, fontsize=11)
 
 
-def _finish(axes: Axes, x: str, y: str, *, percent_scale: bool) -> None:
+def _finish(axes: Axes, x: str, y: str) -> None:
     axes.set_xlabel(x)
     axes.set_ylabel(y)
     axes.grid(which="major", color="#e3e7ec", linewidth=0.8)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(colors=_SOFT, which="both")
-    if percent_scale:
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
-        axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _seconds(point: Point) -> float:

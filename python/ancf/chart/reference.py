@@ -63,8 +63,8 @@ class Reference:
 class Candidates:
     """Runs from which the reference is made, finer than the finest mesh of a chart.
 
-    The first has the membrane of the scene, the other one `full` for `projected` and the reverse: in bending `full` errs
-    on the stiff side, in the plane `projected` on the soft side.
+    The first has the membrane of the scene, the other one `full` for `projected` and the reverse: in bending `full`
+    errs on the stiff side, in the plane `projected` on the soft side.
 
     Parameters
     ----------
@@ -110,11 +110,12 @@ class Candidates:
         InputError
             If neither the first nor the spare ended well, or no probe moves.
         """
-        for variant, coarser in ((self.first, self.coarser), (self.spare, self.spare_coarser)):
+        variant, coarser = self.first, self.coarser
+        outcome = found.get(variant.digest)
+        if outcome is None or outcome.status != "ok":
+            variant, coarser = self.spare, self.spare_coarser
             outcome = found.get(variant.digest)
-            if outcome is not None and outcome.status == "ok":
-                break
-        else:
+        if outcome is None or outcome.status != "ok":
             reason = outcome.reason if outcome else "there was no time for it"
             problem = f"the reference did not end well: {reason}. Try a coarser mesh or a larger budget"
             raise InputError(Mistake(("mesh",), problem))

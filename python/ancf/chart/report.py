@@ -24,6 +24,8 @@ from ancf.pages.page import to_html
 
 FILES = ("chart.png", "chart.svg", "chart.csv", "chart.md", "chart.html")
 _COUNTS = ("elements", "dofs", "steps", "rejected", "iterations", "factorizations", "forces")
+_OF_BODIES = ("divisions", "element", "membrane", "curvature")
+_OF_RUN = ("method", "alpha", "rho_inf", "lumped", "step", "rtol", "newton", "tolerance")
 
 
 def write_chart(folder: Path, chart: Chart) -> list[Path]:
@@ -109,8 +111,8 @@ def _about_measuring(chart: Chart) -> list[str]:
         "tightest of the chart. Error in time: the distance from that run."
         if any(point.time > 0 for point in chart.points)
         else "In statics all error is in space.",
-        f"Wall time: one thread, each run alone on the machine, all runs in random order, {times}; the shortest counts. "
-        "Set-up and results are included, the start of the process is not.",
+        f"Wall time: one thread, each run alone on the machine, all runs in random order, {times}; the shortest "
+        "counts. Set-up and results are included, the start of the process is not.",
         "Errors and counts come from an earlier run, several at a time.",
     ]
 
@@ -151,21 +153,18 @@ def _write_csv(path: Path, chart: Chart) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         counts = [name for name in _COUNTS if any(name in point.counts for point in chart.points)]
-        writer.writerow(
-            ["status", "element", "mesh", "method", "accuracy", "seconds", "median_seconds", "repeats"]
-            + ["error", "error_space", "error_time", *counts, "reason"]
-        )
+        head = ("status", "element", "mesh", "method", "accuracy", "seconds", "median_seconds", "repeats")
+        writer.writerow([*head, "error", "error_space", "error_time", *counts, "reason"])
         for point in chart.points:
             label, timing = point.label, point.timing
-            writer.writerow(
-                ["ok", label.element, label.mesh, label.method, label.accuracy, timing.best, timing.median]
-                + [len(timing.seconds), point.error, *map(_blank, (point.space, point.time))]
-                + [*(point.counts.get(name, "") for name in counts), ""]
-            )
+            settings = (label.element, label.mesh, label.method, label.accuracy)
+            times = (timing.best, timing.median, len(timing.seconds))
+            errors = (point.error, _blank(point.space), _blank(point.time))
+            writer.writerow(["ok", *settings, *times, *errors, *(point.counts.get(name, "") for name in counts), ""])
         for run in chart.lost:
             label = run.label
-            empty = [""] * (6 + len(counts))
-            writer.writerow([run.status, label.element, label.mesh, label.method, label.accuracy, *empty, run.reason])
+            settings = (label.element, label.mesh, label.method, label.accuracy)
+            writer.writerow([run.status, *settings, *[""] * (6 + len(counts)), run.reason])
 
 
 def _blank(value: float) -> float | str:
@@ -218,9 +217,7 @@ def _null(value: float) -> float | None:
 
 def _excerpt(scene: Mapping[str, Any]) -> str:
     """Return the lines of the scene file that the settings are in."""
-    bodies = {
-        name: _only(body, ("divisions", "element", "membrane", "curvature")) for name, body in scene["body"].items()
-    }
+    bodies = {name: _only(body, _OF_BODIES) for name, body in scene["body"].items()}
     run = {key: value for key, value in scene["run"].items() if key != "outputs"}
     # Short lists read better in one line.
     return (

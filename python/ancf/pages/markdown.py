@@ -23,7 +23,7 @@ def to_markdown(blocks: Sequence[Block]) -> str:
     return "\n\n".join(part for part in map(_write, blocks) if part) + "\n"
 
 
-def _write(block: Block) -> str:
+def _write(block: Block) -> str:  # noqa: PLR0911  One for each kind of block.
     match block:
         case Heading(text, level):
             return f"{'#' * level} {text}"
@@ -36,7 +36,7 @@ def _write(block: Block) -> str:
             return "\n".join(f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in line)} |" for line in lines)
         case Picture(file, caption):
             return f"![{caption}]({file})"
-        case Fold(summary, inner):
-            return to_markdown([Text(f"{summary}:"), *inner]).strip()
         case Script():
             return ""
+        case Fold(summary, inner):
+            return to_markdown([Text(f"{summary}:"), *inner]).strip()

@@ -40,7 +40,7 @@ def to_html(title: str, blocks: Sequence[Block], folder: Path) -> str:
     )
 
 
-def _write(block: Block, folder: Path) -> str:
+def _write(block: Block, folder: Path) -> str:  # noqa: PLR0911  One for each kind of block.
     match block:
         case Heading(text, level):
             return f"<h{level}>{_inline(text)}</h{level}>"
@@ -56,11 +56,11 @@ def _write(block: Block, folder: Path) -> str:
             data = base64.b64encode((folder / file).read_bytes()).decode()
             image = f'<img src="data:image/png;base64,{data}" alt="{escape(caption)}">'
             return f"<figure>{image}<figcaption>{_inline(caption)}</figcaption></figure>"
+        case Script(html):
+            return html
         case Fold(summary, inner):
             inside = "\n".join(_write(part, folder) for part in inner)
             return f"<details><summary>{_inline(summary)}</summary>{inside}</details>"
-        case Script(html):
-            return html
 
 
 def _cell(text: str) -> str:

@@ -48,6 +48,7 @@ pub struct System {
     values: Vec<f64>,
     factorization: Factorization,
     free: Vec<f64>,
+    forces: usize,
     factorizations: usize,
     timers: Timers,
 }
@@ -74,6 +75,7 @@ impl System {
             outcomes: vec![Outcome::default(); blocks.len()],
             loads,
             tangent_at: (Vec::new(), Vec::new()),
+            forces: 0,
             factorizations: 0,
             timers,
             model,
@@ -110,6 +112,11 @@ impl System {
     /// Number of different reference shapes among the elements: what is stored once each.
     pub fn classes(&self) -> usize {
         self.blocks.iter().map(|block| block.classes()).sum()
+    }
+
+    /// Number of evaluations of the elastic forces so far, with or without their tangent.
+    pub fn forces(&self) -> usize {
+        self.forces
     }
 
     /// Number of numeric factorisations so far.

@@ -47,7 +47,7 @@ impl Tangent {
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp1";
+const MAGIC: &[u8; 8] = b"ancf-cp2";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -94,7 +94,9 @@ impl Checkpoint {
         words.number(controller.step);
         words.number(controller.last_error);
         words.count(usize::from(controller.rejected));
-        for count in [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.factorizations] {
+        for count in
+            [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.forces, counts.factorizations]
+        {
             words.count(count);
         }
         words.count(usize::from(tangent.is_some()));
@@ -137,6 +139,7 @@ impl Checkpoint {
             rejected: words.count()?,
             unsolved: words.count()?,
             iterations: words.count()?,
+            forces: words.count()?,
             factorizations: words.count()?,
             ..Counts::default()
         };
