@@ -183,8 +183,9 @@ class Plan:
     ) -> dict[str, Outcome]:
         """Run all of it and return what there is time for, under the digests of the variants."""
         among = self.candidates
-        first = [among.first, among.other, among.coarser]
-        runs, how = [*first, *self.runs], {"limit": limit, "executor": executor}
+        # What others are measured against goes first.
+        runs = [among.first, among.other, among.coarser, self.own, *self.tight.values(), *self.runs]
+        how: dict[str, Any] = {"limit": limit, "executor": executor}
         found = _found(runs, log, "errors " if progress else None, budget=budget, **how)
         if among.first.digest not in found or found[among.first.digest].status != "ok":
             spare = [among.spare, among.spare_coarser]

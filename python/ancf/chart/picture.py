@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 from textwrap import wrap
@@ -55,7 +56,12 @@ def _draw(chart: Chart) -> Figure:
     grid = figure.add_gridspec(2, 4, width_ratios=(1, 1, 1, 1), height_ratios=(1.65, 1))
     _draw_main(figure.add_subplot(grid[0, :3]), chart, style)
     _draw_legend(figure.add_subplot(grid[0, 3]), chart, style)
-    panels: list[Panel] = [_draw_space, _draw_time, partial(_draw_counts, "factorizations"), partial(_draw_counts, "forces")]
+    panels: list[Panel] = [
+        _draw_space,
+        _draw_time,
+        partial(_draw_counts, "factorizations"),
+        partial(_draw_counts, "forces"),
+    ]
     if not any(point.time > 0 for point in chart.points):
         panels.remove(_draw_time)
     below = grid[1, :].subgridspec(1, len(panels))
@@ -180,16 +186,16 @@ def _draw_legend(axes: Axes, chart: Chart, style: Style) -> None:
     for title, handles in (("Element, membrane", elements), ("Method", methods), ("Mesh", meshes), ("", marks)):
         rows = len(handles) + bool(title)
         legend = axes.legend(
-            handles=handles, title=title or None, loc="upper left", bbox_to_anchor=(0.0, top), frameon=False
+            handles=handles, title=title or None, loc="upper left", bbox_to_anchor=(0.0, top), frameon=False, fontsize=9
         )
         legend.set_alignment("left")
         legend.get_title().set_fontweight("bold")
         axes.add_artist(legend)
-        top -= 0.038 * rows + 0.028
+        top -= 0.0385 * rows + 0.03
     for winner in winners(chart.points, chart.reference.trust):
         axes.text(0.02, top, f"{percent(winner.level)}:", weight="bold", color=_INK, va="top", fontsize=9)
         axes.text(0.17, top, _told(winner), color=_INK, va="top", fontsize=9, linespacing=1.25)
-        top -= 0.085
+        top -= 0.08
 
 
 def _told(winner: Winner) -> str:
@@ -214,12 +220,22 @@ def _draw_space(axes: Axes, chart: Chart, style: Style) -> None:
 
 
 def _draw_time(axes: Axes, chart: Chart, style: Style) -> None:
-    points = [point for point in chart.points if point.time > 0]
-    style.scatter(axes, points, _seconds, lambda point: point.time, scale=0.5)
+    """Draw the error in time on the mesh with the most points, of these the finest."""
+    numbers = Counter(point.label.space for point in chart.points if point.time > 0)
+    finest = {point.label.space: point.elements for point in chart.points}
+    space = max(numbers, key=lambda name: (numbers[name], finest[name]))
+    colour = style.elements[next(p.label.element for p in chart.points if p.label.space == space)]
+    for method, marker in style.methods.items():
+        points = [p for p in chart.points if (p.label.space, p.label.method) == (space, method) and p.time > 0]
+        points.sort(key=lambda point: point.time)
+        times = [point.timing.best for point in points]
+        axes.plot(
+            times, [p.time for p in points], marker=marker, color=colour, linewidth=0.8, markersize=5.5, alpha=0.8
+        )
     axes.set_xscale("log")
     axes.set_yscale("log")
     _finish(axes, "wall time / s", "")
-    axes.set_title("Error in time: method and step", loc="left", color=_INK, fontsize=11)
+    axes.set_title(f"Error in time: {space}", loc="left", color=_INK, fontsize=11)
 
 
 def _draw_counts(key: str, axes: Axes, chart: Chart, style: Style) -> None:

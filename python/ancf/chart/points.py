@@ -79,7 +79,7 @@ class Winner:
     level : float
         The error allowed, relative to the size of the motion.
     point : Point or None
-        The run; None if none is so accurate, or that cannot be told.
+        The run; None if none is so accurate.
     remark : str
         What to know about it.
     """
@@ -114,16 +114,15 @@ def winners(points: Sequence[Point], trust: float) -> list[Winner]:
 
 
 def _winner(level: float, points: Sequence[Point], trust: float) -> Winner:
-    if trust > level:
-        return Winner(level, None, f"cannot be told: the reference is known to {percent(trust)} only")
     within = [point for point in points if point.error <= level]
     if not within:
         nearest = min((point.error for point in points), default=math.nan)
         return Winner(level, None, f"no run is so accurate; the best comes to {percent(nearest)}")
     point = min(within, key=lambda point: point.timing.best)
+    if trust > level:
+        return Winner(level, point, f"against the reference, which is itself known to {percent(trust)} only")
     unsure = math.isnan(trust) or point.error + trust > level
-    remark = "the reference is not known well enough to be sure" if unsure else ""
-    return Winner(level, point, remark)
+    return Winner(level, point, "the reference is not known well enough to be sure" if unsure else "")
 
 
 def percent(value: float) -> str:

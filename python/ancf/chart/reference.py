@@ -63,8 +63,8 @@ class Reference:
 class Candidates:
     """Runs from which the reference is made, finer than the finest mesh of a chart.
 
-    The first has the membrane of the scene, the other one `full` for `projected` and the reverse: in bending `full`
-    errs on the stiff side, in the plane `projected` on the soft side.
+    The first has the membrane of the scene, `full` or `projected`, the other one `lobatto` or `full`: another cure of
+    locking than the first. (`projected` would be too soft in the plane of the scenes for which one takes `full`.)
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ class Candidates:
     def of(cls, scene: Scene, finest: float, tightest: float) -> Candidates:
         """Make the candidates for a scene with the outputs, the finest mesh and the tightest tolerance of a chart."""
         own = "full" if {body.membrane for body in scene.model.bodies.values()} == {"full"} else "projected"
-        other = "projected" if own == "full" else "full"
+        other = "lobatto" if own == "full" else "full"
         if isinstance(scene.run, Dynamic):
             tight = {"method": "esdirk", "rtol": _TIGHTER * tightest}
             another = {"method": "tr_bdf2", "rtol": tightest}

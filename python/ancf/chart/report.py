@@ -218,14 +218,9 @@ def _null(value: float) -> float | None:
 def _excerpt(scene: Mapping[str, Any]) -> str:
     """Return the lines of the scene file that the settings are in."""
     bodies = {name: _only(body, _OF_BODIES) for name, body in scene["body"].items()}
-    run = {key: value for key, value in scene["run"].items() if key != "outputs"}
+    text = tomli_w.dumps({"body": bodies, "run": _only(scene["run"], _OF_RUN)})
     # Short lists read better in one line.
-    return (
-        tomli_w.dumps({"body": bodies, "run": run})
-        .replace("[\n    ", "[")
-        .replace(",\n    ", ", ")
-        .replace(",\n]", "]")
-    )
+    return text.replace("[\n    ", "[").replace(",\n    ", ", ").replace(",\n]", "]")
 
 
 def _only(table: Mapping[str, Any], keys: Iterable[str]) -> dict[str, Any]:
