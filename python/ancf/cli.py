@@ -6,10 +6,10 @@ import argparse
 import signal
 from collections.abc import Sequence
 
-from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, reproduce, run
+from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, reproduce, run, stability
 from ancf.errors import InputError
 
-_COMMANDS = (run, chart, reproduce, info)
+_COMMANDS = (run, chart, stability, reproduce, info)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -59,10 +59,21 @@ def read_axes(texts: Sequence[str], scene: Scene) -> Axes:
         if not given and name not in defaults:
             problem = f"give it values, as {name}=1,2; without values {one_of(defaults, name)}"
             raise InputError(Mistake(("axes", name), problem))
-        if given and not all(values.split(",")):
-            raise InputError(Mistake(("axes", name), "must be values with commas between them", show(values)))
-        axes[name] = [_value(part) for part in values.split(",")] if given else defaults[name]
+        axes[name] = read_values(name, values) if given else defaults[name]
     return axes
+
+
+def read_values(name: str, text: str) -> list[Any]:
+    """Read values with commas between them.
+
+    Raises
+    ------
+    InputError
+        If one is missing.
+    """
+    if not all(text.split(",")):
+        raise InputError(Mistake((name,), "must be values with commas between them", show(text)))
+    return [_value(part) for part in text.split(",")]
 
 
 def _value(text: str) -> Any:

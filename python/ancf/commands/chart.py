@@ -7,8 +7,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ancf.chart import default_axes, measure, read_axes, write_chart
-from ancf.chart.report import describe
 from ancf.commands import OK
 from ancf.commands.sweeping import add_sweep_arguments, executor
 from ancf.output import make_folder
@@ -47,6 +45,9 @@ def add(commands: Subparsers) -> None:
 
 def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
+    from ancf.chart import default_axes, measure, read_axes, write_chart  # noqa: PLC0415  Pictures are slow to import.
+    from ancf.chart.report import describe  # noqa: PLC0415
+
     scene = load_scene(options.scene)
     axes = read_axes(options.axes, scene) if options.axes else default_axes(scene)
     make_folder(options.output)

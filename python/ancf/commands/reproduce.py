@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING
 from ancf.commands import OK
 from ancf.commands.sweeping import add_sweep_arguments, executor
 from ancf.output import make_folder
-from ancf.reproduce import dufva_shabana
 
 if TYPE_CHECKING:
     from ancf.commands import Subparsers
 
-_STUDIES = {"dufva-shabana-2005": dufva_shabana.reproduce}
+_STUDIES = ("dufva-shabana-2005",)
 
 
 def add(commands: Subparsers) -> None:
@@ -38,9 +37,11 @@ def add(commands: Subparsers) -> None:
 
 def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
+    from ancf.reproduce import dufva_shabana  # noqa: PLC0415  Pictures are slow to import.
+
     make_folder(options.output)
     with executor(options) as runner:
-        paths = _STUDIES[options.study](
+        paths = dufva_shabana.reproduce(
             options.output,
             quick=options.quick,
             repeats=options.repeats,
