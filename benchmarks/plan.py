@@ -24,7 +24,7 @@ from ancf.plan.pilots import Pilot, Pilots
 from ancf.run import Method
 
 TOLERANCES = (1e-1, 1e-2, 1e-3)
-BUDGET = 40.0
+BUDGET = 30.0
 """Seconds for each plan, and for the chart of a scene, whose cheap meshes come first."""
 IMPLICIT: tuple[Method, ...] = ("hht", "generalized_alpha", "energy_momentum", "esdirk", "tr_bdf2")
 CONTROLLED: tuple[Method, ...] = ("hht", "esdirk", "tr_bdf2", "verlet", "rk")
