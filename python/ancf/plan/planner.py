@@ -115,7 +115,7 @@ def _flexible(pilots: Pilots, costs: Costs, tol: float) -> Plan:
     search = Search(pilots, costs, allowed, base, tol, timings)
     first = _first_family(search)
     if first is None or not search.up(first):
-        raise InputError(Mistake(("scene",), f"no pilot reached its end: {_last_words(pilots)}"))
+        raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
     scale = _scales(search.exact, pilots.want)
     search.down()
     chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
@@ -241,7 +241,7 @@ def _timings(
                 assert exact.choice.stepping is not None
                 found = [Timing(exact.choice.stepping, SHARE * tol, exact)]
             return found
-    raise InputError(Mistake(("scene",), f"no pilot reached its end: {_last_words(pilots)}"))
+    raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
 
 
 def _first_family(search: Search) -> Family | None:
