@@ -107,7 +107,14 @@ def orders(quick: bool) -> None:
                 step = coarsest.get(method, coarsest[""])
                 errors = [distance(run(method, step / 2**k), reference) for k in range(4)]
                 observed = [f"{np.log2(a / b):.2f}" for a, b in pairwise(errors)]
-                yield name, f"`{method}`", str(ORDERS[method]), ", ".join(observed), f"{step / 8:.1e}", f"{errors[3]:.1e}"
+                yield (
+                    name,
+                    f"`{method}`",
+                    str(ORDERS[method]),
+                    ", ".join(observed),
+                    f"{step / 8:.1e}",
+                    f"{errors[3]:.1e}",
+                )
 
     table("problem | method | declared | observed, steps halved | finest step, s | its error, m", rows())
 

@@ -152,6 +152,45 @@ def test_interruption_keeps_the_results(edit: Edit, tmp_path: Path, number: sign
     assert (folder / "result.npz").exists()
 
 
+def start(arguments: list[str]) -> "subprocess.Popen[str]":
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    command = [sys.executable, "-m", "ancf", *arguments]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+
+
+def wait_for(path: Path, run: "subprocess.Popen[str]") -> None:
+    while not path.exists() and run.poll() is None:
+        time.sleep(0.02)
+
+
+def test_an_interruption_twice_keeps_the_results(edit: Edit, tmp_path: Path) -> None:
+    scene = edit("pendulum.toml", ("until = 0.05", "until = 500"), ("outputs = [0.025, 0.05]", "every = 0.5"))
+    folder = tmp_path / "out"
+    with start(["run", str(scene), "-o", str(folder)]) as run:
+        wait_for(folder, run)
+        time.sleep(0.5)
+        for _ in range(20):
+            run.send_signal(signal.SIGINT)
+            time.sleep(0.01)
+        _, told = run.communicate(timeout=30)
+    assert run.returncode == 130
+    assert "Traceback" not in told
+    assert summary(folder)["status"] == "interrupted"
+
+
+def test_an_interruption_while_the_film_is_made(edit: Edit, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    scene = edit("pendulum.toml", ("outputs = [0.025, 0.05]", "every = 5e-4"))
+    with start(["run", str(scene), "-o", str(folder), "--animate", "--quiet"]) as run:
+        wait_for(folder / "summary.json", run)
+        time.sleep(1.5)
+        run.send_signal(signal.SIGINT)
+        _, told = run.communicate(timeout=30)
+    assert run.returncode == 130
+    assert told == "ancf: interrupted\n"
+    assert sorted(path.name for path in folder.iterdir()) == ["result.npz", "summary.json"]
+
+
 def test_info(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["info"]) == 0
     lines = dict(line.split(maxsplit=1) for line in capsys.readouterr().out.splitlines())

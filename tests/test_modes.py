@@ -66,7 +66,8 @@ def test_dense_eigenvalues_are_the_same() -> None:
     def dense(triplets: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
         rows, columns, values = triplets
         matrix = coo_array((values, (rows.astype(int), columns.astype(int))), shape=(n, n)).toarray()
-        return matrix[np.ix_(free, free)]
+        part: np.ndarray = matrix[np.ix_(free, free)]
+        return part
 
     q = model.nodal_coordinates()
     expected, vectors = eigh(dense(core.tangent(q)), dense(core.mass()))
