@@ -199,6 +199,6 @@ def test_mistakes_in_a_scene(tmp_path: Path, edit: Callable[..., Path]) -> None:
 
 def test_modes_are_not_swept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     scene = tmp_path / "scene.toml"
-    scene.write_text(SCENE)
+    scene.write_text(SCENE + '[[probe]]\nname = "A"\nat = [1, 0.1]\n')
     assert main(["chart", str(scene), "-o", str(tmp_path / "out")]) == 2
     assert 'run.kind = "modes": must be static or dynamic' in capsys.readouterr().err
