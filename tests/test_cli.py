@@ -46,7 +46,16 @@ def test_run_writes_summary_and_states(scenes: Path, tmp_path: Path, capsys: pyt
     assert found["reached"] == pytest.approx(0.05)
     assert found["counts"]["elements"] == 4
     assert found["counts"]["dofs"] == 78
-    assert set(found["counts"]) == {"elements", "dofs", "steps", "rejected", "unsolved", "iterations", "factorizations"}
+    assert set(found["counts"]) == {
+        "elements",
+        "dofs",
+        "steps",
+        "rejected",
+        "unsolved",
+        "iterations",
+        "forces",
+        "factorizations",
+    }
     assert set(found["seconds"]) == {"total", "setup", "assembly", "factorization", "solve"}
     assert found["probes"]["A"]["t"] == pytest.approx([0.0, 0.025, 0.05])
     assert found["probes"]["A"]["value"][0] == pytest.approx([0.3, 0.3, 0.0])

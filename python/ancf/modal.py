@@ -125,7 +125,8 @@ class ModalResult:
         places = self._nodes(self.q)
         size = np.linalg.norm(np.ptp(places, axis=0))
         scale = _AMPLITUDE * size / np.linalg.norm(self._nodes(self.shapes[mode]), axis=-1).max()
-        return self.q + scale * np.sin(np.asarray(phases, dtype=np.float64))[:, None] * self.shapes[mode]
+        waves = np.sin(np.asarray(phases, dtype=np.float64))
+        return self.q + scale * np.outer(waves, self.shapes[mode])
 
     def _nodes(self, q: FloatArray) -> FloatArray:
         parts = [

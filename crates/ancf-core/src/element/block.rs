@@ -11,6 +11,7 @@ use super::classes::Classes;
 use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
 use super::corners::{combine_all, distribute, distribute_all};
 use super::kernel::{Batch, Flow, Tangent, Totals, point_constants};
+use super::operations::Operations;
 use super::tables::{Group, Tables};
 
 /// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
@@ -96,6 +97,8 @@ pub trait ElementBlock: Send + Sync {
     fn bytes(&self) -> usize;
     /// Mass-proportional and viscous damping.
     fn damping(&self) -> Damping;
+    /// Floating-point operations of an element.
+    fn operations(&self) -> Operations;
     /// Evaluates all elements; the tangents if they are wanted.
     fn evaluate(&self, at: At<'_>, want: Option<Want<'_>>, outcome: &mut Outcome);
     /// The derivatives of an element's shape functions, `in_x` and `in_y` times, at `(xi, eta)`.
@@ -197,6 +200,10 @@ impl<const N: usize> ElementBlock for Block<N> {
 
     fn derivative(&self, orders: [usize; 2], point: [f64; 2]) -> Vec<f64> {
         self.tables.derivative(orders, point).to_vec()
+    }
+
+    fn operations(&self) -> Operations {
+        Operations::count(&self.tables, &self.couplings)
     }
 
     fn damping(&self) -> Damping {

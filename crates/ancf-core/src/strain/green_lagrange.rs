@@ -20,6 +20,8 @@ pub struct GreenLagrange<S: Simd> {
 
 impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
     type Law = ();
+    const FORCE: usize = 33 + 45;
+    const STIFFNESS: usize = 18 * (18 + 18);
 
     #[inline(always)]
     fn new((): (), gradients: [Vector<S>; 3], _stretch: Lanes<S>) -> Self {
