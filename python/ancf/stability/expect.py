@@ -114,6 +114,15 @@ def near(name: str, value: Sequence[float], within: float) -> Expectation:
     return check
 
 
+def never_wrong(name: str, like: str, within: float) -> Expectation:
+    """Expect a run to fail, or to agree with another: what it must not do is to end well with something else."""
+
+    def check(outcomes: Outcomes) -> str:
+        return agree(like, name, within=within)(outcomes) if outcomes[name].status == "ok" else ""
+
+    return check
+
+
 def fails_or_gains(name: str, more_than: float) -> Expectation:
     """Expect a run to fail, or to gain energy."""
 
