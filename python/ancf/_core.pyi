@@ -102,7 +102,10 @@ class Model:
     def tangent(
         self, q: _FloatArray, t: float = 0.0, previous: _FloatArray | None = None
     ) -> tuple[_IndexArray, _IndexArray, _FloatArray]: ...  # rows, columns, values of d(Q_k - Q_e)/dq, free coordinates
+    def factorize(self) -> int: ...  # of the tangent that was made last: number of negative pivots
+    def solve(self, right: _FloatArray) -> _FloatArray: ...  # (n,) with that factorisation, zero where fixed
     def mass(self) -> tuple[_IndexArray, _IndexArray, _FloatArray]: ...  # rows, cols, values over n coordinates
+    def samples(self, body: str, of: str) -> _FloatArray: ...  # "membrane" | "bending": (elements, points, 2)
     def locate(self, body: str, points: _FloatArray) -> None: ...  # InputError if a point is outside the body
     def evaluate(
         self, body: str, points: _FloatArray, quantity: str, q: _FloatArray, v: _FloatArray | None = None

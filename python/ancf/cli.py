@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import signal
 from collections.abc import Sequence
 
-from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, reproduce, run, stability
+from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, plan, reproduce, run, stability
+from ancf.commands.signals import was_stopped, watch_signals
 from ancf.errors import InputError
 
-_COMMANDS = (run, chart, stability, reproduce, info)
+_COMMANDS = (run, plan, chart, stability, reproduce, info)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -26,18 +26,22 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit status.
     """
     options = _parser().parse_args(arguments)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+    watch_signals()
     try:
         status: int = options.call(options)
     except InputError as error:
         return complain(error, WRONG_INPUT)
     except RecursionError:
         return complain("the scene is nested too deeply", WRONG_INPUT)
-    except OSError as error:
-        return complain(error, CANNOT_WRITE)
     except KeyboardInterrupt:
         return complain("interrupted", INTERRUPTED)
+    except Exception as error:
+        # Libraries turn an interruption into errors of their own: a film's writer does.
+        if was_stopped():
+            return complain("interrupted", INTERRUPTED)
+        if isinstance(error, OSError):
+            return complain(error, CANNOT_WRITE)
+        raise
     return status
 
 

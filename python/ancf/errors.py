@@ -7,12 +7,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Self
+from typing import Any, Self
 
 from ancf import _core
-
-if TYPE_CHECKING:
-    from ancf.result import Result
 
 Path = tuple[str | int, ...]
 
@@ -125,11 +122,11 @@ def from_core(*path: str | int) -> Iterator[None]:
 class _WithResult(BaseException):
     """What happened, and what the run had by then."""
 
-    def __init__(self, message: str, result: Result) -> None:
+    def __init__(self, message: str, result: Any) -> None:
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self) -> tuple[type[Self], tuple[str, Result]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[str, Any]]:
         return type(self), (str(self), self.result)
 
 
@@ -140,7 +137,7 @@ class SolveError(_WithResult, RuntimeError):
     ----------
     message : str
         Where it failed, why, and what to try.
-    result : Result
+    result : Result or ModalResult
         Every state up to the last good one.
     """
 
@@ -152,6 +149,6 @@ class Interrupted(_WithResult, KeyboardInterrupt):
     ----------
     message : str
         Where it stopped.
-    result : Result
+    result : Result or ModalResult
         Every state up to there.
     """

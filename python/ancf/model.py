@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from types import MappingProxyType
-from typing import Annotated, Any, Self, TypeVar
+from typing import Annotated, Any, Literal, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -149,6 +149,51 @@ class Model(Input):
         """Return the ranges of the natural coordinates x and y of a body."""
         return self._assembled.domain(body)
 
+    def nodes(self, body: str) -> NDArray[np.float64]:
+        """Return the natural coordinates of the nodes of a body.
+
+        Parameters
+        ----------
+        body : str
+            Its name.
+
+        Returns
+        -------
+        ndarray, shape (nodes, 2)
+            Node after node, x fastest.
+
+        Raises
+        ------
+        InputError
+            If there is no such body.
+        """
+        self._check_body(body)
+        return self._assembled.nodes(body)
+
+    def samples(self, body: str, of: Literal["membrane", "bending"] = "bending") -> NDArray[np.float64]:
+        """Return where the elements of a body sample their strain: forces and stresses are most accurate there.
+
+        Parameters
+        ----------
+        body : str
+            Its name.
+        of : {"bending", "membrane"}, default "bending"
+            The strain: curvature or membrane strain, of solid elements the same.
+
+        Returns
+        -------
+        ndarray, shape (elements, points, 2)
+            Natural coordinates, for `evaluate` as ``samples.reshape(-1, 2)``.
+
+        Raises
+        ------
+        InputError
+            If there is no such body.
+        """
+        self._check_body(body)
+        with from_core():
+            return self._assembled.samples(body, of)
+
     def nodal_coordinates(self) -> NDArray[np.float64]:
         """Return all nodal coordinates at rest.
 
@@ -195,8 +240,8 @@ class Model(Input):
             If there is no such body or quantity, or a point is outside.
         """
         mistakes = Mistakes()
-        if body not in self.bodies:
-            mistakes.add(("body",), one_of(self.bodies, body), body)
+        with mistakes.gather():
+            self._check_body(body)
         if quantity not in QUANTITIES:
             mistakes.add(("quantity",), one_of(QUANTITIES, quantity), quantity)
         places = np.asarray(points, dtype=np.float64)
@@ -209,6 +254,10 @@ class Model(Input):
             return self._assembled.evaluate(body, places, quantity, q, v)
         except _core.InputError as error:
             raise InputError(Mistake(("points",), f"allowed is {error.allowed}", error.value)) from None
+
+    def _check_body(self, body: str) -> None:
+        if body not in self.bodies:
+            raise InputError(Mistake(("body",), one_of(self.bodies, body), show(body)))
 
 
 def _make(cls: type[_Item], values: dict[str, Any]) -> _Item:

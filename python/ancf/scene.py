@@ -19,12 +19,13 @@ from ancf.errors import InputError, Mistake, Mistakes, one_of
 from ancf.inputs import Input, table
 from ancf.loads import Load
 from ancf.materials import Material
+from ancf.modal import ModalResult, find_modes
 from ancf.model import Model
 from ancf.output import replacing
 from ancf.probes import Probe
 from ancf.progress import Progress
 from ancf.result import Result
-from ancf.run import Dynamic, Run, Static
+from ancf.run import Dynamic, Modes, Run, Static
 from ancf.solve import solve
 from ancf.supports import Support
 
@@ -42,7 +43,7 @@ class Scene:
         What it is called.
     model : Model
         What to run.
-    run : Static or Dynamic
+    run : Static, Dynamic or Modes
         How to run it.
     material_names : mapping of str to str, optional
         What the material of each body is called; like the body if left out.
@@ -50,7 +51,7 @@ class Scene:
 
     title: str
     model: Model
-    run: Static | Dynamic
+    run: Static | Dynamic | Modes
     material_names: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
@@ -131,7 +132,7 @@ class Scene:
         threads: int | None = None,
         progress: Progress = None,
         throw: bool = True,
-    ) -> Result:
+    ) -> Result | ModalResult:
         """Run the scene.
 
         Parameters
@@ -141,8 +142,8 @@ class Scene:
 
         Returns
         -------
-        Result
-            The state at the start, then one for each output.
+        Result or ModalResult
+            The state at the start, then one for each output; or of a run of the kind "modes" these.
 
         Raises
         ------
@@ -159,6 +160,8 @@ class Scene:
         elif checkpoint is not None or resume is not None:
             raise InputError(Mistake(("checkpoint",), "is for motion only"))
         with _scene_paths({}):
+            if isinstance(self.run, Modes):
+                return find_modes(self.model, self.run, threads=threads, progress=progress, throw=throw)
             return solve(self.model, self.run, threads=threads, progress=progress, throw=throw, start=start)
 
 

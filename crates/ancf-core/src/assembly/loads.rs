@@ -57,9 +57,10 @@ impl Loads {
                     }
                 }
                 LoadKind::Moment { body, edge, per_length } => {
-                    let (block, grid) = (body.index(), model.body(body).grid());
+                    let (block, grid, element) =
+                        (body.index(), model.body(body).grid(), model.body(body).plate().element);
                     let elements = blocks[block].as_ref();
-                    loads.followers.push(Follower::moment(block, elements, grid, edge, per_length, history));
+                    loads.followers.push(Follower::moment(block, element, elements, grid, edge, per_length, history));
                     continue;
                 }
                 LoadKind::Pressure { body, pressure } => {

@@ -114,6 +114,11 @@ impl System {
         self.blocks.iter().map(|block| block.classes()).sum()
     }
 
+    /// Memory of all elements, bytes: see [`ElementBlock::bytes`].
+    pub fn element_bytes(&self) -> usize {
+        self.blocks.iter().map(|block| block.bytes()).sum()
+    }
+
     /// Number of evaluations of the elastic forces so far, with or without their tangent.
     pub fn forces(&self) -> usize {
         self.forces

@@ -2,8 +2,9 @@
 //!
 //! `method` is the registry: a [`Method`] is a name with parameters, an `Integrator` makes one step. The integrators are
 //! `generalized_alpha` (also HHT and Newmark), `runge_kutta` with the tableaux `tr_bdf2`, `esdirk` and
-//! `dormand_prince`, `energy_momentum`, `verlet` and, for bodies that do not deform, `rigid`. What they need of a model is in `equations`: implicit ones put
-//! their step into the one nonlinear problem of [`nonlinear`](crate::nonlinear), explicit ones ask for accelerations,
+//! `dormand_prince`, `energy_momentum`, `verlet` and, for bodies that do not deform, `rigid`. What they need of a model
+//! is in `equations`: implicit ones state their step as a `stage`, which is the one nonlinear problem of
+//! [`nonlinear`](crate::nonlinear), explicit ones ask for accelerations,
 //! which `inertia` finds. `control` chooses the length of steps, `stability` limits it, `simulation` strings steps
 //! together, and `checkpoint` is what is needed to go on later.
 
@@ -13,6 +14,7 @@ mod dormand_prince;
 mod energy_momentum;
 mod equations;
 mod esdirk;
+mod fingerprint;
 mod generalized_alpha;
 mod inertia;
 mod method;
@@ -20,6 +22,7 @@ mod rigid;
 mod runge_kutta;
 mod simulation;
 mod stability;
+mod stage;
 mod state;
 mod tr_bdf2;
 mod verlet;

@@ -8,6 +8,7 @@ use super::Options;
 use super::checkpoint::{Checkpoint, Tangent};
 use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
+use super::fingerprint::Fingerprint;
 use super::method::Integrator;
 use super::stability::highest_frequency;
 use super::state::Instantaneous;
@@ -246,6 +247,7 @@ impl<'a> Simulation<'a> {
     fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             method: self.options.method.name().to_owned(),
+            fingerprint: Fingerprint::of(self.equations.system.model(), self.options),
             now: self.now.clone(),
             controller: self.controller,
             tangent: self.tangent.clone(),

@@ -1,12 +1,19 @@
 //! Newton's method: plain, with mixed integration points, and modified.
 
 use crate::assembly::System;
+use crate::linear::gmres;
 use crate::observe::Observer;
 
 use super::convergence::Convergence;
 use super::forces::{Forces, Tangent};
 use super::scale::scales;
 use super::{Failure, Options, Problem, Variant};
+
+/// Accuracy of corrections with the part of a tangent that is not assembled, the most products for it, and the length of
+/// the differences that make them, relative to the size of the model.
+const TURNING_TOLERANCE: f64 = 1e-2;
+const TURNING_PRODUCTS: usize = 8;
+const DIFFERENCE: f64 = 1e-7;
 
 /// How a solution was found.
 #[derive(Clone, Copy, Debug)]
@@ -71,6 +78,12 @@ impl Newton {
     /// The factorisation that the next solution may use.
     pub(crate) fn kept(&self) -> Option<Kept> {
         self.kept
+    }
+
+    /// `q - q*` of the last solution, without what rounding of the coordinates `q` takes of it. With it inertia balances
+    /// the forces to rounding however far the body has moved.
+    pub(crate) fn from_origin(&self) -> &[f64] {
+        &self.forces.from_origin
     }
 
     /// Makes the next solution use the factorisation that the system holds, or none.
@@ -147,7 +160,7 @@ impl Newton {
         let begin = problem.t;
         let coefficients = problem.coefficients();
         self.kept = self.kept.filter(|kept| reuse && kept.coefficients == coefficients);
-        self.forces.begin();
+        self.forces.begin(&problem, q);
         let mut convergence = Convergence::new(tolerance);
         for iteration in 1..=max_iterations {
             if observer.stop() {
@@ -169,6 +182,9 @@ impl Newton {
             let mut size = f64::INFINITY;
             if finite {
                 system.solve(&self.forces.residual, &mut self.correction);
+                if problem.start.is_some() {
+                    self.bring_in_turning(system, &problem, q);
+                }
                 if let Some(normal) = normal {
                     problem.t += stay_in_plane(system, normal, q, problem.t, &mut self.correction);
                 }
@@ -178,6 +194,7 @@ impl Newton {
                 // The old factorisation leads away: back to the start with a new one.
                 q.copy_from_slice(&self.begin);
                 problem.t = begin;
+                self.forces.begin(&problem, q);
                 (self.kept, extrapolate) = (None, false);
                 convergence.restart();
                 continue;
@@ -185,9 +202,7 @@ impl Newton {
             let useful = fresh || convergence.contracts(size);
             let converged = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
             self.previous.copy_from_slice(q);
-            for (q, d) in q.iter_mut().zip(&self.correction) {
-                *q -= d;
-            }
+            self.forces.correct(&self.correction, q);
             extrapolate = mip;
             self.kept = (reuse && useful).then_some(Kept { coefficients, negative });
             if converged {
@@ -198,6 +213,19 @@ impl Newton {
             }
         }
         Err(Failure::NotConverged { iterations: max_iterations, correction: convergence.size })
+    }
+
+    /// Corrects for what the assembled tangent of mean forces lacks: strains change along `B` at the end of the step, not at
+    /// its middle, `B_m^T W (B_1 - B_m) / 2`, which is not symmetric. The factorised tangent is the preconditioner.
+    fn bring_in_turning(&mut self, system: &mut System, problem: &Problem<'_>, q: &[f64]) {
+        let Self { forces, correction, scale, .. } = self;
+        let mut product = vec![0.0; q.len()];
+        let apply = |x: &[f64], y: &mut [f64]| {
+            let size = x.iter().zip(scale.iter()).map(|(x, s)| x.abs() / s).fold(0.0, f64::max);
+            forces.derivative(system, problem, [q, x], DIFFERENCE / size, &mut product);
+            system.solve(&product, y);
+        };
+        gmres(apply, correction, TURNING_TOLERANCE, TURNING_PRODUCTS);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::{Block, Measure, SOLID_PAIRS, add_outer};
+use super::{Form, Measure, SOLID_PAIRS, add_outer};
 use crate::lanes::{Lanes, Vector, axpy, dot, scale};
 
 /// The component of each pair of directions in [`SOLID_PAIRS`].
@@ -20,6 +20,8 @@ pub struct GreenLagrange<S: Simd> {
 
 impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
     type Law = ();
+    const FORCE: usize = 33 + 45;
+    const STIFFNESS: usize = 18 * (18 + 18);
 
     #[inline(always)]
     fn new((): (), gradients: [Vector<S>; 3], _stretch: Lanes<S>) -> Self {
@@ -45,7 +47,7 @@ impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
 
     /// The strain `de` changes with the gradient `r_d` by `r_e`.
     #[inline(always)]
-    fn stiffness(&self, weight: &[[Lanes<S>; 6]; 6], stress: [Lanes<S>; 6], form: &mut [Block<S>]) {
+    fn stiffness(&self, weight: &[[Lanes<S>; 6]; 6], stress: [Lanes<S>; 6], mut form: Form<'_, S>) {
         let r = &self.gradients;
         let zero = stress[0].like(0.0);
         for d in 0..3 {
@@ -60,7 +62,7 @@ impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
                     }
                     block = add_outer(r[k], sum, block);
                 }
-                form[3 * d + e] = block;
+                form.set(d, e, block);
             }
         }
     }
