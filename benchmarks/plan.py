@@ -214,8 +214,8 @@ def judge(name: str) -> list[Line]:
     doubt = distance(exact, other, scales(exact))
     try:
         plans = [ancf.plan(case.scene, want="A", tol=tol, budget=BUDGET, threads=1) for tol in TOLERANCES]
-    except ancf.InputError as error:
-        print(name, error, file=sys.stderr)
+    except ancf.InputError as mistake:
+        print(name, mistake, file=sys.stderr)
         return []
     tried = chart(case, pilots, exact)
     lines = []
