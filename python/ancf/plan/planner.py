@@ -306,12 +306,12 @@ def _report(
     pilots, tol, finest = search.pilots, search.tol, search.best
     errors = search.observed()
     converged = in_space + in_time <= tol
-    reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.1g}."]
+    reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.2g}."]
     if chosen.choice.rung == finest:
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
     if chosen.choice.stepping is not None:
         reasons.append(
-            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; its error is {in_time:.1g}."
+            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; its error is {in_time:.2g}."
         )
     axes = "xy"
     names = list(pilots.scene.model.bodies)
@@ -327,7 +327,7 @@ def _report(
             else "the budget or the largest mesh was reached"
         )
         reasons.append(
-            f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.1g}."
+            f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.2g}."
         )
     reasons += told(pilots.scene.model, tol)
     rows = [
@@ -335,7 +335,7 @@ def _report(
             str(p.choice),
             search.predicted.get(p.choice),
             p.seconds,
-            None,
+            search.guessed.get(p.choice),
             errors.get(p.choice),
             p.outcome,
         )

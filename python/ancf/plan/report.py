@@ -102,11 +102,12 @@ class Plan:
 
     def _lines(self) -> list[str]:
         width = max(len(row.settings) for row in self.rows)
-        head = f"  {'tried':{width}}  predicted s  observed s     error"
+        head = f"  {'tried':{width}}  predicted s  observed s  predicted error     error"
         lines = [head]
         for index, row in enumerate(self.rows):
             mark = "*" if index == self.chosen else " "
-            numbers = f"{_number(row.predicted_seconds):>11}  {_number(row.seconds):>10}  {_number(row.error):>8}"
+            numbers = f"{_number(row.predicted_seconds):>11}  {_number(row.seconds):>10}"
+            numbers += f"  {_number(row.predicted_error):>15}  {_number(row.error):>8}"
             outcome = "" if row.outcome == "ok" else f"  {row.outcome}"
             lines.append(f"{mark} {row.settings:{width}}  {numbers}{outcome}")
         wants = ", ".join(f"{name} {size:.4g}" for name, size in self.scale.items())

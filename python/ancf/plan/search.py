@@ -76,6 +76,7 @@ class Search:
     predicted: dict[Choice, float] = field(default_factory=dict)
     sides: dict[tuple[int, int], Side] = field(default_factory=dict)
     allowed: list[Stepping] = field(default_factory=list)
+    guessed: dict[Choice, float] = field(default_factory=dict)
     best: Rung = field(init=False)
     exact: Values = field(init=False)
     own: float = field(init=False)
@@ -267,14 +268,18 @@ class Search:
             trial = self._trial(limit)
             if trial is None or self.pilots.spent > (1 + _DOWN) * start:
                 break
-            self.run(trial, 1.5 * limit + 0.02)
+            self._try(trial, 1.5 * limit + 0.02)
         start = self.pilots.spent
         for cost, rung in self._cheap():
             limit = self._limit()
             if cost > _WORTH * limit or self.pilots.spent > (1 + _DOWN) * start:
                 break
-            self.run(rung, limit + 0.02)
+            self._try(rung, limit + 0.02)
         self._lengthen()
+
+    def _try(self, rung: Rung, limit: float) -> None:
+        self.guessed[self.choice(rung)] = self._guess(rung.family)(rung) + self.own
+        self.run(rung, limit)
 
     def _lengthen(self) -> None:
         """Try on the cheapest rung the longer steps that finer or other rungs could not be solved with."""
