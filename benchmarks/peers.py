@@ -31,7 +31,7 @@ THREADS = ("RAYON_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_
 STEEL: dict[str, Any] = {"size": (0.5, 0.15), "thickness": 0.001, "E": 2.07e11, "nu": 0.3, "density": 7810.0}
 RUBBER: dict[str, Any] = {"size": (0.3, 0.3), "thickness": 0.01, "E": 1e5, "nu": 0.3, "density": 7810.0}
 UNTIL = 0.3
-# Project Chrono 10 with MKL PARDISO, one thread, as quoted to us; not measured here: the package index does not have it.
+# Project Chrono 10 with MKL PARDISO, one thread, as quoted to us; not measured here: the package index lacks it.
 QUOTED = (
     ("tangent of an element, us", "14 (3423), 35 (3443)"),
     ("force of an element, us", "3.7 to 6.5"),

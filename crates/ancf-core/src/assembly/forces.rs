@@ -80,6 +80,7 @@ impl System {
     }
 
     fn evaluate(&mut self, at: At<'_>, want: Option<Want<'_>>) {
+        self.forces += 1;
         for (block, outcome) in self.blocks.iter().zip(&mut self.outcomes) {
             block.evaluate(at, want, outcome);
         }

@@ -1,5 +1,6 @@
 //! Factorisation L D L^T of a symmetric sparse matrix and solution of linear systems with it.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use faer::MatMut;
@@ -131,7 +132,7 @@ impl Factorization {
             tasks.push((fronts[0]..fronts[1], own, region[0], updates));
             (factors, memory) = (rest, others);
         }
-        let subtree = |(fronts, factor, begin, updates): (std::ops::Range<usize>, &mut [f64], usize, &mut [f64])| {
+        let subtree = |(fronts, factor, begin, updates): (Range<usize>, &mut [f64], usize, &mut [f64])| {
             let mut rest = factor;
             let mut negative = 0;
             for f in fronts {
@@ -217,7 +218,7 @@ impl Work<'_> {
             let length = run.length as usize;
             panel[run.to as usize..][..length].copy_from_slice(&self.values[run.from as usize..][..length]);
         }
-        let add = |target: &mut [f64], top: usize, columns: std::ops::Range<usize>| {
+        let add = |target: &mut [f64], top: usize, columns: Range<usize>| {
             let height = rows - top;
             let part = |(k, target): (usize, &mut [f64])| {
                 let first = columns.start + k * CHUNK;
@@ -261,8 +262,8 @@ impl Work<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::SymmetricMatrix;
     use super::super::testing::{dense, random_matrix, random_vector};
+    use super::super::{SymmetricMatrix, order};
     use super::*;
     use nalgebra::{DMatrix, DVector};
 
@@ -394,6 +395,99 @@ mod tests {
         let before = solve(&mut factorization);
         factorization.factorize(second.values()).unwrap();
         assert_eq!(solve(&mut factorization), before);
+    }
+
+    /// Plate of side x side nodes with nine coordinates each, in the order of elimination: random, and diagonally
+    /// dominant with the given signs.
+    fn plate(side: usize, sign: impl Fn(usize) -> f64) -> SymmetricMatrix {
+        let node = |i: usize, j: usize| j * side + i;
+        let cells = (0..(side - 1) * (side - 1)).map(|cell| (cell % (side - 1), cell / (side - 1)));
+        let cells: Vec<_> =
+            cells.map(|(i, j)| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]).collect();
+        let positions: Vec<_> = (0..side * side).map(|k| [(k % side) as f64, (k / side) as f64]).collect();
+        let order = order(&Pattern::from_groups(side * side, &cells).unwrap(), Some(&positions)).unwrap();
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(k, &node)| place[node] = k);
+        let groups: Vec<Vec<usize>> =
+            cells.iter().map(|cell| cell.iter().flat_map(|&n| 9 * place[n]..9 * place[n] + 9).collect()).collect();
+        let pattern = Arc::new(Pattern::from_groups(9 * side * side, &groups).unwrap());
+        let values = random_vector(pattern.nnz(), 9);
+        let mut sums = vec![0.0; pattern.n()];
+        for column in 0..pattern.n() {
+            for (&row, value) in pattern.rows(column)[1..].iter().zip(&values[pattern.col_ptr()[column] + 1..]) {
+                sums[row] += value.abs();
+                sums[column] += value.abs();
+            }
+        }
+        let mut matrix = SymmetricMatrix::new(Arc::clone(&pattern), values);
+        for (column, sum) in sums.iter().enumerate() {
+            matrix.values_mut()[pattern.col_ptr()[column]] = 1.01 * sign(column) * sum;
+        }
+        matrix
+    }
+
+    #[test]
+    fn large_systems_have_the_same_bits_on_any_number_of_threads() {
+        // by Gershgorin's theorem there are as many negative eigenvalues as negative diagonal entries
+        let matrix = plate(30, |column| if column % 10 == 3 { -1.0 } else { 1.0 });
+        let n = matrix.pattern().n();
+        let rhs = random_vector(3 * n, 2);
+        let solve = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let (mut factorization, inertia) = factorized(&matrix);
+                assert_eq!(inertia.negative, n / 10);
+                let tree = &factorization.tree;
+                assert!(tree.subtrees.len() > 4 && tree.fronts[tree.top()].iter().any(|front| front.work() > SHARED));
+                let mut x = rhs.clone();
+                factorization.solve_many(&mut x, 3);
+                x
+            })
+        };
+        let one = solve(1);
+        for component in 0..3 {
+            let part = |x: &[f64]| x.iter().skip(component).step_by(3).copied().collect::<Vec<_>>();
+            assert!(matrix.residual(&part(&one), &part(&rhs), &mut vec![0.0; n]) < 1e-14);
+        }
+        for threads in [2, 3] {
+            assert!(solve(threads).iter().zip(&one).all(|(a, b)| a.to_bits() == b.to_bits()), "{threads} threads");
+        }
+    }
+
+    #[test]
+    fn a_large_singular_system_is_refused_at_its_last_column() {
+        // springs between all nodes of a plate that nothing holds
+        let mut matrix = plate(30, |_| 0.0);
+        let pattern = Arc::clone(matrix.pattern());
+        for column in 0..pattern.n() {
+            for place in pattern.col_ptr()[column] + 1..pattern.col_ptr()[column + 1] {
+                let stiffness = matrix.values()[place].abs();
+                matrix.values_mut()[place] = -stiffness;
+                for end in [column, pattern.row_idx()[place]] {
+                    matrix.values_mut()[pattern.col_ptr()[end]] += stiffness;
+                }
+            }
+        }
+        let refused = Factorization::new(Arc::clone(&pattern)).unwrap().factorize(matrix.values());
+        assert!(
+            matches!(refused, Err(LinearError::Singular { column, .. }) if column == pattern.n() - 1),
+            "{refused:?}"
+        );
+    }
+
+    #[test]
+    fn long_chains_are_solved_too() {
+        // -u'' = 1 in differences: exact at the nodes
+        let n = 20_000;
+        let pattern = Arc::new(Pattern::from_groups(n, &(0..n - 1).map(|k| [k, k + 1]).collect::<Vec<_>>()).unwrap());
+        let values = (0..n).flat_map(|k| [2.0, -1.0].into_iter().take(pattern.rows(k).len())).collect();
+        let (mut factorization, _) = factorized(&SymmetricMatrix::new(pattern, values));
+        let mut u = vec![1.0; n];
+        factorization.solve(&mut u);
+        for (k, u) in u.iter().enumerate() {
+            let expected = 0.5 * (k + 1) as f64 * (n - k) as f64;
+            assert!((u / expected - 1.0).abs() < 1e-8, "{k}: {u} instead of {expected}");
+        }
     }
 
     #[test]
