@@ -1,7 +1,7 @@
 """Print the tables of docs/motion.md: orders, agreement, error control, conservation, damping, reuse.
 
-Run it from any folder with ``python benchmarks/motion.py``; give names of tables to print only these. All of them take some
-ten minutes; ``--quick`` takes small meshes and short motions, to see that the script runs.
+Run it from any folder with ``python benchmarks/motion.py``; give names of tables to print only these. All of them take
+some ten minutes; ``--quick`` takes small meshes and short motions, to see that the script runs.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ SIDE = 0.3
 FALL = 0.3
 METHODS = tuple(method for method in get_args(Method) if method != "rigid")
 EXPLICIT = ("verlet", "rk")
-ORDERS = {method: 2 for method in METHODS} | {"esdirk": 4, "rk": 5}
+ORDERS = dict.fromkeys(METHODS, 2) | {"esdirk": 4, "rk": 5}
 YOUNG = {"rubber": 1e5, "steel": 2e11}
 
 
@@ -49,7 +49,8 @@ def pendulum(divisions: int, thickness: float = 0.01, young: float = 1e5, **mate
 
 def positions(result: ancf.Result) -> NDArray[np.float64]:
     """Return the positions of all nodes in the last state, m."""
-    return result.q[-1].reshape(-1, 3, 3)[:, 0]
+    end: NDArray[np.float64] = result.q[-1].reshape(-1, 3, 3)[:, 0]
+    return end
 
 
 def distance(result: ancf.Result, reference: ancf.Result) -> float:
@@ -67,14 +68,14 @@ def table(head: str, rows: Iterable[Iterable[str]]) -> None:
 
 
 def orders(quick: bool) -> None:
-    """Observed orders at three steps that are halved, beside the declared ones."""
+    """Print observed orders at three steps that are halved, beside the declared ones."""
     clamped = ancf.Model(
         bodies={"plate": plate(1, 0.1, 1e5)},
         supports=[ancf.Support(at="edge:x0", clamp=True)],
         loads=[ancf.Gravity(acceleration=(0.0, 0.0, -0.1))],
     )
     speed = np.zeros(36)
-    struck = [i for i in range(2, 36, 3) if 9 <= i < 27]
+    struck = [i for i in range(2, 36, 3) if i % 18 >= 9]
     speed[struck] = 1e-2 * np.sin(struck)
     cases: list[tuple[str, ancf.Model, float, dict[str, float], NDArray[np.float64] | None]] = [
         ("clamped plate, small vibration", clamped, 0.5, {"esdirk": 0.01, "rk": 0.005, "": 0.0025}, speed),
@@ -107,37 +108,45 @@ def orders(quick: bool) -> None:
                 step = coarsest.get(method, coarsest[""])
                 errors = [distance(run(method, step / 2**k), reference) for k in range(4)]
                 observed = [f"{np.log2(a / b):.2f}" for a, b in pairwise(errors)]
-                yield name, f"`{method}`", str(ORDERS[method]), ", ".join(observed), f"{step / 8:.1e}", f"{errors[3]:.1e}"
+                yield (
+                    name,
+                    f"`{method}`",
+                    str(ORDERS[method]),
+                    ", ".join(observed),
+                    f"{step / 8:.1e}",
+                    f"{errors[3]:.1e}",
+                )
 
     table("problem | method | declared | observed, steps halved | finest step, s | its error, m", rows())
 
 
 def agreement(quick: bool) -> None:
-    """The tip of the rubber pendulum at 0.3 s by methods that share little, each at two steps."""
+    """Print the tip of the rubber pendulum at 0.3 s by methods that share little, each at two steps."""
     divisions = 2 if quick else 8
     model = pendulum(divisions)
-    steps = {"esdirk": 2.5e-4, "verlet": 6.25e-5, "rk": 2.5e-4}
+    steps = {"esdirk": 2.5e-4, "verlet": 6.25e-5, "rk": 1e-4}
 
     def run(method: Method, step: float) -> NDArray[np.float64]:
         result = ancf.simulate(model, until=FALL, step=step, method=method, outputs=[FALL], tolerance=1e-11)
-        return result.probes["A"].value[-1]
+        end: NDArray[np.float64] = result.probes["A"].value[-1]
+        return end
 
-    mean = run("rk", 1e-4)
+    exact = run("rk", 5e-5)
 
     def rows() -> Iterable[Iterable[str]]:
         for method in METHODS:
             step = steps.get(method, 1.25e-4)
             coarse, tip = run(method, 2 * step), run(method, step)
             x, _, z = tip
-            change, apart = np.abs(tip - coarse).max(), np.abs(tip - mean).max()
+            change, apart = np.abs(tip - coarse).max(), np.abs(tip - exact).max()
             yield f"`{method}`", f"{step:.2e}", f"{x:.7f}", f"{z:.7f}", f"{change:.1e}", f"{apart:.1e}"
 
     print(f"{divisions} x {divisions} elements, `full`.\n")
-    table("method | step, s | x = y, m | z, m | change from twice the step, m | from `rk` at 1e-4 s, m", rows())
+    table("method | step, s | x = y, m | z, m | change from twice the step, m | from `rk` at 5e-5 s, m", rows())
 
 
 def tolerances(quick: bool) -> None:
-    """Errors of runs with error control, relative to rtol, beside a converged run."""
+    """Print errors of runs with error control, relative to rtol, beside a converged run."""
 
     def rows() -> Iterable[Iterable[str]]:
         for divisions in (1, 2) if quick else (1, 2, 4, 8):
@@ -174,18 +183,18 @@ def flight(model: ancf.Model) -> NDArray[np.float64]:
 
 
 def conservation(quick: bool) -> None:
-    """What a free flight keeps, at steps at which the trapezoidal rule fails."""
+    """Print what a free flight keeps, at steps at which the trapezoidal rule fails."""
     model = ancf.Model(bodies={"plate": plate(2, 0.01, 1e7)})
-    steps = 2000 if quick else 100_000
+    step, steps = 1.5e-3, 2000 if quick else 100_000
 
     def rows() -> Iterable[Iterable[str]]:
-        for method in ("energy_momentum", "newmark", "hht", "generalized_alpha", "tr_bdf2", "esdirk"):
+        for method in ("energy_momentum", "newmark", "hht"):
             result = ancf.simulate(
                 model,
-                until=1e-3 * steps,
-                step=1e-3,
+                until=step * steps,
+                step=step,
                 method=method,
-                every=1e-3 * steps / 200,
+                every=step * steps / 200,
                 velocity=flight(model),
                 tolerance=1e-12,
                 throw=False,
@@ -209,7 +218,7 @@ def conservation(quick: bool) -> None:
 
 
 def reuse(quick: bool) -> None:
-    """Whether keeping factorisations pays, in processor time of one thread."""
+    """Print whether keeping factorisations pays, in processor time of one thread."""
 
     def rows() -> Iterable[Iterable[str]]:
         for divisions in (2,) if quick else (4, 16, 32):

@@ -327,6 +327,11 @@ def test_static_run_of_a_shell(element: ElementKind, membrane: MembraneRule | No
         ({"method": "hht", "alpha": 0.0}, reference.GeneralizedAlpha.hht(0.0)),
         ({"method": "hht", "alpha": -0.3}, reference.GeneralizedAlpha.hht(-0.3)),
         ({"method": "generalized_alpha", "rho_inf": 0.6}, reference.GeneralizedAlpha.generalized_alpha(0.6)),
+        ({"method": "tr_bdf2"}, reference.RungeKutta.tr_bdf2()),
+        ({"method": "esdirk"}, reference.RungeKutta.esdirk()),
+        ({"method": "energy_momentum"}, reference.EnergyMomentum()),
+        ({"method": "verlet"}, reference.Verlet()),
+        ({"method": "rk"}, reference.RungeKutta.dormand_prince()),
     ],
 )
 @newtons
@@ -336,7 +341,7 @@ def test_dynamic_run(
     membrane: MembraneRule | None,
     newton: Literal["mip", "plain"],
     options: dict[str, Any],
-    method: reference.GeneralizedAlpha,
+    method: reference.Method,
 ) -> None:
     """The pendulum of Dufva and Shabana (2005), 2 x 2 elements, with a start that bends and stretches it."""
     mesh, until, step = reference.RectangleMesh((0.3, 0.3), (2, 2)), 0.05, 5e-3

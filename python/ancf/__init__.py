@@ -33,6 +33,7 @@ from ancf.mapped import Surface
 from ancf.materials import Material
 from ancf.modal import ModalResult, modes
 from ancf.model import Model
+from ancf.plan import Plan, plan
 from ancf.probes import Probe
 from ancf.result import Energy, Record, Result
 from ancf.run import Dynamic, Modes, Static
@@ -56,6 +57,7 @@ __all__ = [
     "Model",
     "Modes",
     "Moment",
+    "Plan",
     "Pressure",
     "Probe",
     "Record",
@@ -72,6 +74,7 @@ __all__ = [
     "__version__",
     "load_scene",
     "modes",
+    "plan",
     "simulate",
     "solve_static",
 ]

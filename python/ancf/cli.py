@@ -5,11 +5,11 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, complain, info, run
+from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, plan, reproduce, run, stability
 from ancf.commands.signals import was_stopped, watch_signals
 from ancf.errors import InputError
 
-_COMMANDS = (run, info)
+_COMMANDS = (run, plan, chart, stability, reproduce, info)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -7,13 +7,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Self
+from typing import Any, Self
 
 from ancf import _core
-
-if TYPE_CHECKING:
-    from ancf.modal import ModalResult
-    from ancf.result import Result
 
 Path = tuple[str | int, ...]
 
@@ -126,11 +122,11 @@ def from_core(*path: str | int) -> Iterator[None]:
 class _WithResult(BaseException):
     """What happened, and what the run had by then."""
 
-    def __init__(self, message: str, result: Result | ModalResult) -> None:
+    def __init__(self, message: str, result: Any) -> None:
         super().__init__(message)
         self.result = result
 
-    def __reduce__(self) -> tuple[type[Self], tuple[str, Result | ModalResult]]:
+    def __reduce__(self) -> tuple[type[Self], tuple[str, Any]]:
         return type(self), (str(self), self.result)
 
 

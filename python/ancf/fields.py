@@ -6,9 +6,9 @@ PyVista writes the grids, with the writer of VTK itself; it is an optional depen
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 import numpy as np
@@ -44,7 +44,8 @@ FIELDS: tuple[Quantity, ...] = (
 )
 """What is written unless quantities are chosen; velocity in motion only."""
 
-_FACETS = 10_000
+_FACETS = 2500
+_VALUES = 500_000
 _INSTALL = 'needs PyVista, which is not installed: pip install "ancf[fields]"'
 
 
@@ -63,26 +64,32 @@ def write_fields(
         wanted = tuple(quantity for quantity in wanted if quantity != "velocity")
     surface = _Surface(result.model, subdivisions)
 
-    def grid(state: int) -> pyvista.UnstructuredGrid:
-        q, v = result.q[state], result.v[state]
-        return surface.grid(q, {quantity: surface.values(quantity, q, v) for quantity in wanted})
+    def grids() -> Iterator[pyvista.UnstructuredGrid]:
+        for states in surface.parts(len(result.t)):
+            q, v = result.q[states], result.v[states]
+            places = surface.values("position", q)
+            values = {quantity: surface.values(quantity, q, v) for quantity in wanted}
+            for index, place in enumerate(places):
+                yield surface.grid(place, {quantity: value[index] for quantity, value in values.items()})
 
-    _write(Path(path), result.t, grid)
+    _write(Path(path), result.t, grids())
 
 
 def write_modes(result: ModalResult, path: str | os.PathLike[str], subdivisions: int | None = None) -> None:
     """Write every mode of a result, see `ModalResult.write_fields`."""
     surface = _Surface(result.model, subdivisions)
-    displacement = surface.values("displacement", result.q)
-    normal = surface.values("normal", result.q)
+    state = result.q[None]
+    (place,), (displacement,) = surface.values("position", state), surface.values("displacement", state)
 
-    def grid(mode: int) -> pyvista.UnstructuredGrid:
-        shape = surface.values("position", result.shapes[mode])
-        made = surface.grid(result.q, {"shape": shape, "displacement": displacement, "normal": normal})
-        made.field_data["frequency"] = result.frequency[[mode]]
-        return made
+    def grids() -> Iterator[pyvista.UnstructuredGrid]:
+        for modes in surface.parts(len(result.frequency)):
+            shapes = surface.values("position", result.shapes[modes])
+            for frequency, shape in zip(result.frequency[modes], shapes, strict=True):
+                grid = surface.grid(place, {"shape": shape, "displacement": displacement})
+                grid.field_data["frequency"] = [frequency]
+                yield grid
 
-    _write(Path(path), np.arange(1, len(result.frequency) + 1), grid)
+    _write(Path(path), np.arange(1.0, len(result.frequency) + 1), grids())
 
 
 def check_fields(path: str | os.PathLike[str]) -> None:
@@ -132,31 +139,31 @@ class _Surface:
         self._bodies = np.repeat(np.arange(len(facets)), [len(part) for part in facets])
         self._points = np.concatenate([grid.points.reshape(-1, 2) for grid in self._grids])
 
-    def values(self, quantity: Quantity, q: FloatArray, v: FloatArray | None = None) -> FloatArray:
-        """Return a quantity at all points: (points, components), or (points,) where it has one."""
-        velocity = None if v is None else v[None]
-        parts = [
-            self._model.evaluate(grid.body, grid.points.reshape(-1, 2), quantity, q[None], velocity)[0]
-            for grid in self._grids
-        ]
-        values = np.concatenate(parts)
-        return values[:, 0] if values.shape[1] == 1 else values
+    def parts(self, states: int) -> Iterator[slice]:
+        """Cut states into parts whose values fit in the memory."""
+        size = max(1, _VALUES // len(self._points))
+        return (slice(first, first + size) for first in range(0, states, size))
 
-    def grid(self, q: FloatArray, fields: dict[str, FloatArray]) -> pyvista.UnstructuredGrid:
-        """Return the surfaces in a state, with fields at their points."""
+    def values(self, quantity: Quantity, q: FloatArray, v: FloatArray | None = None) -> FloatArray:
+        """Return a quantity at all points in states of shape (states, n): (states, points, components)."""
+        parts = [self._model.evaluate(grid.body, grid.points.reshape(-1, 2), quantity, q, v) for grid in self._grids]
+        return np.concatenate(parts, axis=1)
+
+    def grid(self, places: FloatArray, fields: dict[str, FloatArray]) -> pyvista.UnstructuredGrid:
+        """Return the surfaces with their points in the given places, and fields at them."""
         import pyvista  # noqa: PLC0415  As above.
 
         cells = np.insert(self._facets, 0, 4, axis=1).ravel()
         kinds = np.full(len(self._facets), pyvista.CellType.QUAD, dtype=np.uint8)
-        grid = pyvista.UnstructuredGrid(cells, kinds, self.values("position", q))
+        grid = pyvista.UnstructuredGrid(cells, kinds, places)
         for name, values in fields.items():
-            grid.point_data[name] = values
+            grid.point_data[name] = values[:, 0] if values.shape[1] == 1 else values
         grid.point_data["natural_coordinates"] = self._points
         grid.cell_data["body"] = self._bodies
         return grid
 
 
-def _write(path: Path, times: Iterable[float], grid: Callable[[int], Any]) -> None:
+def _write(path: Path, times: FloatArray, grids: Iterable[pyvista.UnstructuredGrid]) -> None:
     """Write one grid for each time, and the collection that names them; what an earlier run left is replaced."""
     check_fields(path)
     folder = path.with_suffix("")
@@ -169,8 +176,8 @@ def _write(path: Path, times: Iterable[float], grid: Callable[[int], Any]) -> No
         ElementTree.SubElement(collection, "DataSet", attributes)
     ElementTree.indent(root)
     with replacing(*(file for file, _ in numbered), path) as (*files, temporary):
-        for index, file in enumerate(files):
-            grid(index).save(file)
+        for file, grid in zip(files, grids, strict=True):
+            grid.save(file)
         ElementTree.ElementTree(root).write(temporary, encoding="utf-8", xml_declaration=True)
     kept = {file for file, _ in numbered}
     for file in folder.glob("*.vtu"):

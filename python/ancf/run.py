@@ -174,8 +174,8 @@ class Dynamic(_Run):
         Of the last correction, relative to the size of the model.
     max_iterations : int, default 30
         A step that needs more is cut with error control; otherwise the run fails.
-    reuse : bool, default False
-        Keep factorisations over iterations and steps while they converge fast.
+    reuse : bool, default True
+        Keep factorisations over iterations and steps while they converge fast: modified Newton.
 
     Raises
     ------
@@ -202,7 +202,7 @@ class Dynamic(_Run):
     outputs: Sequence[float] | None = None
     every: Positive | None = None
     lumped: bool = False
-    reuse: bool = False
+    reuse: bool = True
 
     @model_validator(mode="after")
     def _agree(self) -> Self:

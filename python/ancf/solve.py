@@ -98,7 +98,7 @@ def simulate(
     newton: Literal["mip", "plain"] = "mip",
     tolerance: float = 1e-8,
     max_iterations: int = 30,
-    reuse: bool = False,
+    reuse: bool = True,
     checkpoint: str | os.PathLike[str] | None = None,
     resume: str | os.PathLike[str] | None = None,
     threads: int | None = None,

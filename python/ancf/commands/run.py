@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ancf.commands import FAILED, INTERRUPTED, OK, complain, positive
+from ancf.commands.plan import add_options, make_plan
 from ancf.commands.signals import deferred_signals
-from ancf.errors import InputError, Interrupted
+from ancf.errors import InputError, Interrupted, Mistake
 from ancf.fields import check_fields
-from ancf.film import check_film
 from ancf.modal import ModalResult
 from ancf.output import FIELDS, PICTURE, make_folder, remove_extras, remove_folders, replacing, write_result
 from ancf.report import describe
@@ -36,26 +36,41 @@ def add(commands: Subparsers) -> None:
     parser.add_argument("--resume", type=Path, metavar="FILE", help="go on from a checkpoint, and keep it up to date")
     parser.add_argument("--threads", type=positive, metavar="N", help="default: all")
     parser.add_argument("--quiet", action="store_true", help="no progress bar and no table")
+    add_options(parser, tol=None)
     parser.set_defaults(call=call)
 
 
 def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
     folder = options.output
+    if options.tol is None and options.want:
+        raise InputError(Mistake(("want",), "is for planned runs, with --tol"))
+    if options.tol is not None and (options.checkpoint or options.resume):
+        raise InputError(Mistake(("tol",), "plans without checkpoints: run the scene that the plan has written"))
     scene = load_scene(options.scene)
     film = None if options.animate is None else folder / f"motion.{options.animate}"
     if film is not None:
+        from ancf.film import check_film  # noqa: PLC0415  Matplotlib takes longer to import than most scenes to run.
+
         check_film(film)
     if options.fields:
         check_fields(folder / FIELDS)
+    planned = None
+    if options.tol is not None:
+        planned = make_plan(options, folder)
     made = make_folder(folder)
     try:
-        result = scene.solve(
-            checkpoint=options.checkpoint or options.resume,
-            resume=options.resume,
-            threads=options.threads,
-            progress=not options.quiet and sys.stderr is not None,
-            throw=False,
+        # The chosen pilot was a whole run.
+        result = (
+            planned.result
+            if planned is not None
+            else scene.solve(
+                checkpoint=options.checkpoint or options.resume,
+                resume=options.resume,
+                threads=options.threads,
+                progress=not options.quiet and sys.stderr is not None,
+                throw=False,
+            )
         )
     except InputError:
         remove_folders(made)

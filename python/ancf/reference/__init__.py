@@ -6,7 +6,8 @@ The paper is K. Dufva and A. A. Shabana, Analysis of thin plate structures using
 formulation, Proc. IMechE Part K 219 (2005) 345-355.
 """
 
-from .dynamics import GeneralizedAlpha, Motion, simulate
+from .dynamics import Method, Motion, simulate
+from .integrators import EnergyMomentum, GeneralizedAlpha, RungeKutta, Verlet
 from .material import Material
 from .mesh import RectangleMesh
 from .model import Model
@@ -15,14 +16,18 @@ from .statics import StaticResult, negative_eigenvalues, solve_static
 from .surface import annulus, cylinder, plane, sphere
 
 __all__ = [
+    "EnergyMomentum",
     "GeneralizedAlpha",
     "Material",
+    "Method",
     "Model",
     "Motion",
     "NewtonError",
     "NewtonOptions",
     "RectangleMesh",
+    "RungeKutta",
     "StaticResult",
+    "Verlet",
     "annulus",
     "cylinder",
     "negative_eigenvalues",

@@ -138,12 +138,12 @@ class Model:
         """Stress extrapolated linearly from q to q + dq; Magisano, Leonetti and Garcea (2017)."""
         return [energy.extrapolated_stress(self._local(q), self._local(dq)) for energy in self._energies]
 
-    def internal_force(self, q: FloatArray) -> FloatArray:
-        """Elastic force Q_k, shape (n,)."""
-        return sum(
-            (self._assemble_vector(self._index, energy.force(self._local(q))) for energy in self._energies),
-            np.zeros(self.coordinates),
-        )
+    def internal_force(self, q: FloatArray, stress: Sequence[FloatArray] | None = None) -> FloatArray:
+        """Elastic force Q_k, shape (n,); of the stress S that is given, as `stress` gives it, B^T S."""
+        e = self._local(q)
+        stresses = self.stress(q) if stress is None else stress
+        forces = (energy.force(e, S) for energy, S in zip(self._energies, stresses, strict=True))
+        return sum((self._assemble_vector(self._index, force) for force in forces), np.zeros(self.coordinates))
 
     def tangent(self, q: FloatArray, stress: Sequence[FloatArray] | None = None) -> sp.csc_array:
         """Differentiate the elastic force: dQ_k/dq, shape (n, n).

@@ -10,17 +10,31 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ancf import _core
+from ancf.bodies import Rectangle
+from ancf.errors import InputError, Mistake, show
 from ancf.materials import Material
+from ancf.run import Dynamic, Modes, Static
 from ancf.scene import Scene
 
 _OF_BODIES = ("element", "membrane", "curvature", "thickness", "divisions")
 _OF_MATERIALS = tuple(Material.model_fields)
+_DEFAULTS = {
+    **{
+        name: field.default
+        for cls in (Rectangle, Material, Static, Dynamic)
+        for name, field in cls.model_fields.items()
+    },
+    "membrane": "projected",
+    "curvature": "paper",
+}
 _EXCLUDED = {
     "step": ("rtol", "atol", "first_step", "max_step", "min_step"),
     "rtol": ("step", "force"),
     "method": ("alpha", "rho_inf", "lumped"),
 }
 """Keys of [run] that lose their meaning when another is replaced."""
+_EXPLICIT = {"verlet": 0.1, "rk": 0.3}
+"""What the steps of explicit methods, though more, cost of those of implicit ones."""
 
 
 @dataclass(frozen=True)
@@ -65,8 +79,10 @@ class Variant:
         Raises
         ------
         InputError
-            If a body is a `Surface`.
+            If a body is a `Surface`, or the scene is run for its modes.
         """
+        if isinstance(scene.run, Modes):
+            raise InputError(Mistake(("run", "kind"), "must be static or dynamic to be compared", show("modes")))
         document = deepcopy(scene.document())
         for name, value in settings.items():
             if name == "mesh":
@@ -95,18 +111,20 @@ class Variant:
 
     @property
     def effort(self) -> float:
-        """A rough measure of the time that the run takes: elements times steps, for the time to go."""
+        """A rough measure of the time that the run takes, for the time to go: elements times implicit steps."""
         run = self.scene["run"]
         elements = sum(body["divisions"][0] * body["divisions"][1] for body in self.scene["body"].values())
+        weight = _EXPLICIT.get(run.get("method", ""), 1.0) * elements
         if "step" in run:
-            return float(elements * run["until"] / run["step"])
+            return float(weight * run["until"] / run["step"])
         # Methods with error control are of order 2 and above.
-        return float(elements * 10 * run.get("rtol", 1e-3) ** (-1 / 3))
+        return float(weight * 10 * run.get("rtol", 1e-3) ** (-1 / 3))
 
 
 def _replace(tables: Any, name: str, value: Any) -> None:
+    """Set a value in tables; what is as by default is left out, as in documents, so that equal scenes are equal."""
     for table in tables:
-        if value is None:
+        if value is None or _DEFAULTS.get(name) == value:
             table.pop(name, None)
         else:
             table[name] = list(value) if isinstance(value, tuple) else value

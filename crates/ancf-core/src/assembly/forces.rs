@@ -23,7 +23,9 @@ impl System {
     pub fn force(&mut self, at: At<'_>, force: &mut [f64]) -> StrainEnergy {
         let start = Instant::now();
         self.evaluate(at, None);
+        let evaluated = Instant::now();
         self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
+        self.timers.scatter += evaluated.elapsed();
         self.timers.assembly += start.elapsed();
         self.energy()
     }
@@ -64,18 +66,21 @@ impl System {
     pub fn assemble_at(&mut self, at: At<'_>, t: f64, want: Want<'_>, force: &mut [f64]) -> StrainEnergy {
         let start = Instant::now();
         self.evaluate(at, Some(want));
-        self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
         if self.loads.follow() {
             let factors: Vec<_> = self.loads.follower_factors(t).map(|factor| want.stiffness * factor).collect();
             self.loads.subtract_stiffness(&self.blocks, self.model.reference(), at.q, &factors, &mut self.outcomes);
             self.tangent_at = (at.q.to_vec(), factors);
         }
+        let evaluated = Instant::now();
+        self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
         self.scatter.sum(&self.blocks, &self.outcomes, &mut self.values);
+        self.timers.scatter += evaluated.elapsed();
         self.timers.assembly += start.elapsed();
         self.energy()
     }
 
     fn evaluate(&mut self, at: At<'_>, want: Option<Want<'_>>) {
+        self.forces += 1;
         for (block, outcome) in self.blocks.iter().zip(&mut self.outcomes) {
             block.evaluate(at, want, outcome);
         }

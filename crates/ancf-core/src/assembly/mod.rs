@@ -48,6 +48,7 @@ pub struct System {
     values: Vec<f64>,
     factorization: Factorization,
     free: Vec<f64>,
+    forces: usize,
     factorizations: usize,
     timers: Timers,
 }
@@ -74,6 +75,7 @@ impl System {
             outcomes: vec![Outcome::default(); blocks.len()],
             loads,
             tangent_at: (Vec::new(), Vec::new()),
+            forces: 0,
             factorizations: 0,
             timers,
             model,
@@ -115,6 +117,11 @@ impl System {
     /// Memory of all elements, bytes: see [`ElementBlock::bytes`].
     pub fn element_bytes(&self) -> usize {
         self.blocks.iter().map(|block| block.bytes()).sum()
+    }
+
+    /// Number of evaluations of the elastic forces so far, with or without their tangent.
+    pub fn forces(&self) -> usize {
+        self.forces
     }
 
     /// Number of numeric factorisations so far.

@@ -98,7 +98,9 @@ impl Checkpoint {
         words.number(controller.step);
         words.number(controller.last_error);
         words.count(usize::from(controller.rejected));
-        for count in [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.factorizations] {
+        for count in
+            [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.forces, counts.factorizations]
+        {
             words.count(count);
         }
         words.count(usize::from(tangent.is_some()));
@@ -145,6 +147,7 @@ impl Checkpoint {
             rejected: words.count()?,
             unsolved: words.count()?,
             iterations: words.count()?,
+            forces: words.count()?,
             factorizations: words.count()?,
             ..Counts::default()
         };

@@ -128,7 +128,7 @@ pub fn simulate(
     let mut counts = Counts::default();
     let mut reached = 0.0;
     let end = run(system, options, checkpoint, &mut counts, &mut reached, observer);
-    let counts = Counts { factorizations: counts.factorizations, ..counts.of(system) };
+    let counts = Counts { forces: counts.forces, factorizations: counts.factorizations, ..counts.of(system) };
     let seconds = Seconds::new(system, start.elapsed());
     Ok(Run { outcome: Outcome::from_end(end), reached, jumps: Vec::new(), counts, seconds })
 }

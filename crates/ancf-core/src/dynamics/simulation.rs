@@ -31,14 +31,14 @@ pub(super) struct Simulation<'a> {
     tangent: Option<Tangent>,
     /// Steps of this run and, after a checkpoint, all counts of the run before.
     counts: Counts,
-    /// Factorisations of the system before this run.
-    earlier: usize,
+    /// Evaluations and factorisations of the system before this run.
+    earlier: [usize; 2],
 }
 
 impl<'a> Simulation<'a> {
     pub fn new(equations: Equations<'a>, options: &'a Options) -> Self {
         let n = equations.system.coordinates();
-        let earlier = equations.system.factorizations();
+        let earlier = [equations.system.forces(), equations.system.factorizations()];
         let mut allowed = vec![f64::INFINITY; n];
         if let Steps::Controlled(Tolerances { rtol, atol, .. }) = options.steps {
             for coordinate in equations.inertia.positions().iter().flat_map(|a| 3 * a..3 * a + 3) {
@@ -63,7 +63,8 @@ impl<'a> Simulation<'a> {
     pub fn counts(&self) -> Counts {
         Counts {
             iterations: self.counts.iterations + self.equations.newton.iterations(),
-            factorizations: self.counts.factorizations + self.equations.system.factorizations() - self.earlier,
+            forces: self.counts.forces + self.equations.system.forces() - self.earlier[0],
+            factorizations: self.counts.factorizations + self.equations.system.factorizations() - self.earlier[1],
             ..self.counts
         }
     }
@@ -260,7 +261,7 @@ impl<'a> Simulation<'a> {
         (self.now, self.controller, self.counts) = (now, controller, counts);
         if let Some(tangent) = &tangent {
             tangent.restore(&mut self.equations)?;
-            self.earlier = self.equations.system.factorizations();
+            self.earlier[1] = self.equations.system.factorizations();
         }
         self.tangent = tangent;
         Ok(())

@@ -11,6 +11,7 @@ use super::classes::Classes;
 use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
 use super::corners::{combine_all, distribute, distribute_all};
 use super::kernel::{Batch, Flow, Tangent, Totals, point_constants};
+use super::operations::Operations;
 use super::tables::{Group, Tables};
 
 /// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
@@ -96,6 +97,8 @@ pub trait ElementBlock: Send + Sync {
     fn bytes(&self) -> usize;
     /// Mass-proportional and viscous damping.
     fn damping(&self) -> Damping;
+    /// Floating-point operations of an element.
+    fn operations(&self) -> Operations;
     /// Evaluates all elements; the tangents if they are wanted.
     fn evaluate(&self, at: At<'_>, want: Option<Want<'_>>, outcome: &mut Outcome);
     /// The derivatives of an element's shape functions, `in_x` and `in_y` times, at `(xi, eta)`.
@@ -199,6 +202,10 @@ impl<const N: usize> ElementBlock for Block<N> {
         self.tables.derivative(orders, point).to_vec()
     }
 
+    fn operations(&self) -> Operations {
+        Operations::count(&self.tables, &self.couplings)
+    }
+
     fn damping(&self) -> Damping {
         self.damping
     }
@@ -285,10 +292,17 @@ impl<const N: usize> WithSimd for Task<'_, N> {
             }
 
             let current = gather(simd, &block.vectors, members, at.q);
-            let start = at.start.map(|q| gather(simd, &block.vectors, members, q));
+            let [mut start, mut velocity, mut previous] = [const { None }; 3];
+            if let Some(q) = at.start {
+                start = Some(gather(simd, &block.vectors, members, q));
+            }
             let motion = at.motion.filter(|_| block.flows(at));
-            let velocity = motion.map(|motion| gather(simd, &block.vectors, members, motion.velocity));
-            let previous = want.and_then(|w| w.previous).map(|p| gather(simd, &block.vectors, members, p));
+            if let Some(motion) = motion {
+                velocity = Some(gather(simd, &block.vectors, members, motion.velocity));
+            }
+            if let Some(q) = want.and_then(|want| want.previous) {
+                previous = Some(gather(simd, &block.vectors, members, q));
+            }
             let mut totals = Totals::<S, N>::new(simd);
             if let Some(combined) = &mut combined {
                 combined.clear(simd);

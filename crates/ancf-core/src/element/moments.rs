@@ -76,6 +76,12 @@ impl Moments {
         Self { side, inner: place(side / 2), entries, ends: ends.as_chunks().0.to_vec() }
     }
 
+    /// Floating-point operations for points with so many gradient vectors, a fused multiply-add two.
+    pub fn operations(&self, gradients: usize) -> usize {
+        let line = [0, 0, 2, 3, 11][self.side];
+        9 * gradients * (gradients + 1) / 2 * 2 * self.side * line + 18 * self.entries.len()
+    }
+
     /// Adds the tangent that the stiffness of the points makes; `forms` has it for each pair of gradient vectors, point by
     /// point, and is left with the moments.
     #[inline(always)]

@@ -97,7 +97,7 @@ impl Body {
     }
 
     /// The elements, ready to be evaluated; `reference` are the nodal coordinates of the whole model at rest.
-    pub(crate) fn elements(&self, reference: &[f64]) -> Box<dyn ElementBlock> {
+    pub fn elements(&self, reference: &[f64]) -> Box<dyn ElementBlock> {
         let Plate { material, thickness, element, .. } = self.plate;
         let section = Section { material, thickness };
         let vectors = (0..self.grid.elements()).flat_map(|element| self.element_vectors(element));

@@ -47,8 +47,11 @@ const GAP: f64 = 1e-6;
 const PLACES: [f64; 3] = [0.5, 0.35, 0.65];
 /// Residual of a mode that has converged, relative to its eigenvalue's distance from the shift.
 const PRECISION: f64 = 1e-9;
-/// Rounding of an eigenvalue, in units of `eps |x| . |K| |x|`.
-const ROUNDING: f64 = 4.0;
+/// Residual of a mode that rounding keeps from converging, in units of `eps |x| . |K| |x|`.
+const FLOOR: f64 = 4.0;
+/// Eigenvalue that is nothing but rounding, in the same unit: entries of `K` are differences of larger numbers. Rigid
+/// rotations of flat and curved bodies reach 200.
+const ZERO: f64 = 1000.0;
 /// Coupling of modes by loads without potential, relative to their eigenvalues, above which they are none.
 const COUPLING: f64 = 1e-6;
 /// Factorisations to find the shift, each with ten times the last one.
@@ -217,7 +220,7 @@ impl<'a> Search<'a> {
         let good = |pair: &&Ritz| {
             pair.residual <= PRECISION * pair.value || {
                 let vector = self.lanczos.vector(pair);
-                pair.residual <= self.rounding(&vector) * pair.value * pair.value
+                pair.residual <= FLOOR * self.rounding(&vector) * pair.value * pair.value
             }
         };
         pairs.iter().take_while(good).count()
@@ -246,7 +249,7 @@ impl<'a> Search<'a> {
         inertia.negative.checked_sub(below).ok_or(Failure::ModesNotFound { found: inertia.negative, count: below })
     }
 
-    /// What rounding of the stiffness may do to an eigenvalue.
+    /// The unit in which rounding of the stiffness changes an eigenvalue, `eps |x| . |K| |x|`.
     fn rounding(&self, shape: &[f64]) -> f64 {
         let free: Vec<f64> = self.system.free().iter().map(|coordinate| shape[*coordinate].abs()).collect();
         let (pattern, values) = (self.stiffness.pattern(), self.stiffness.values());
@@ -258,7 +261,7 @@ impl<'a> Search<'a> {
                 sum += twice * values[start + k].abs() * free[row] * free[column];
             }
         }
-        ROUNDING * f64::EPSILON * sum
+        f64::EPSILON * sum
     }
 
     /// The modes that have converged.
@@ -266,7 +269,7 @@ impl<'a> Search<'a> {
         let mode = |ritz: &Ritz| {
             let shape = self.lanczos.vector(ritz);
             let eigenvalue = self.eigenvalue(ritz);
-            let rounding = self.rounding(&shape);
+            let rounding = ZERO * self.rounding(&shape);
             Mode { eigenvalue: if eigenvalue.abs() <= rounding { 0.0 } else { eigenvalue }, shape }
         };
         self.converged.iter().map(mode).collect()

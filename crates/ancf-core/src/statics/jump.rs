@@ -120,6 +120,7 @@ fn jump(
             found = None;
         }
     }
+    path.forces += damped.forces();
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
     let end = found.ok_or(Failure::Unstable { negative })?;

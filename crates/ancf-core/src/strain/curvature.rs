@@ -70,6 +70,9 @@ impl<S: Simd> Curvature<S> {
 
 impl<S: Simd> Measure<S, 5, 3> for Curvature<S> {
     type Law = CurvatureLaw;
+    const FORCE: usize = 21 + 20 + 63;
+    // Normal and its derivatives, changes with it, weighted sums, their outer products with H, coupling to b_ab.
+    const STIFFNESS: usize = 100 + 108 + 108 + 159 + 162 + 58 + 3 * 59 + 6 * 22;
 
     #[inline(always)]
     fn new(law: CurvatureLaw, [x, y, xx, yy, xy]: [Vector<S>; 5], area: Lanes<S>) -> Self {

@@ -18,6 +18,8 @@ pub struct Metric<S: Simd> {
 
 impl<S: Simd> Measure<S, 2, 3> for Metric<S> {
     type Law = ();
+    const FORCE: usize = 17 + 18;
+    const STIFFNESS: usize = 6 * 9 + 6 * 18;
 
     #[inline(always)]
     fn new((): (), [x, y]: [Vector<S>; 2], _area: Lanes<S>) -> Self {

@@ -35,6 +35,13 @@ pub trait Measure<S: Simd, const D: usize, const C: usize>: Copy {
     /// What is fixed for all points and elements, such as the choice of a variant.
     type Law: Copy;
 
+    /// Floating-point operations of [`new`](Self::new), [`strain`](Self::strain) and [`forces`](Self::forces), a fused
+    /// multiply-add two.
+    const FORCE: usize;
+
+    /// The same of [`stiffness`](Self::stiffness).
+    const STIFFNESS: usize;
+
     /// Evaluates the measure for the given gradient vectors; `stretch` is that of the reference: the area
     /// `|R_x x R_y|` of a surface, the volume `|R_x x R_y . R_z|` of a solid for a unit of the parameters.
     fn new(law: Self::Law, gradients: [Vector<S>; D], stretch: Lanes<S>) -> Self;
