@@ -106,6 +106,6 @@ def with_few_outputs(scene: Scene) -> Scene:
     if isinstance(run, Dynamic):
         outputs = [run.until * (index + 1) / _OUTPUTS for index in range(_OUTPUTS)]
         run = Dynamic(**{key: value for key, value in run if key not in ("outputs", "every")}, outputs=outputs)
-    elif run.path == "arc":
+    elif isinstance(run, Static) and run.path == "arc":
         raise InputError(Mistake(("run", "path"), "charts compare states at equal load factors", show("arc")))
     return Scene(scene.title, scene.model, run, scene.material_names)

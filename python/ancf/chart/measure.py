@@ -21,6 +21,8 @@ from ancf.sweep.executors import processors
 
 _SHARE = 0.85
 """Of the budget; the rest is for repetitions."""
+_LEAST = 5.0
+"""Seconds that every run may take."""
 _TIGHTER = 0.1
 _TOLERANCES = (1e-3,)
 _OMITTED = "the time budget did not reach so far; the same command again goes on, --budget gives more"
@@ -99,7 +101,7 @@ def measure(
     plan = Plan.of(with_few_outputs(scene), axes)
     # What several processors do now one of them is timed at afterwards.
     share = _SHARE * budget / (2 if executor else 1 + processors())
-    found = plan.run(log, limit=budget / 4, budget=share, executor=executor, progress=progress)
+    found = plan.run(log, limit=max(_LEAST, budget / 4), budget=share, executor=executor, progress=progress)
     reference = plan.candidates.choose(found)
     well = [variant for variant in plan.runs if (outcome := found.get(variant.digest)) and outcome.status == "ok"]
     timings = time_alone(

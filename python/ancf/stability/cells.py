@@ -110,8 +110,10 @@ def _failed(outcome: Outcome, gain: float) -> Kind:
 def energy_gain(energy: Energy) -> float:
     """Return the largest gain, or if there is none the largest loss, relative to the energy that moves.
 
-    That is the largest of kinetic energy, strain energy and the work of the loads.
+    That is the largest of kinetic energy, strain energy and the work of the loads; nan if there are no states.
     """
+    if not len(energy.t):
+        return np.nan
     strain = energy.membrane + energy.bending
     surplus = energy.kinetic + strain + energy.dissipated - energy.loads
     surplus = surplus - surplus[0]

@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from ancf.result import Record
 from ancf.stability.cells import energy_gain
 from ancf.sweep import Outcome, Variant
 
@@ -83,7 +84,7 @@ def ends(status: str, *names: str, reason: str = "") -> Expectation:
 
 
 def agree(*names: str, within: float) -> Expectation:
-    """Expect the last values of the first probe to agree, relative to the size of the motion of the first run."""
+    """Expect the first probes to agree at their common outputs, relative to the size of the motion of the first run."""
 
     def check(outcomes: Outcomes) -> str:
         first = next(iter(outcomes[names[0]].probes.values()), None)
@@ -93,12 +94,20 @@ def agree(*names: str, within: float) -> Expectation:
         bad = []
         for name in names[1:]:
             other = next(iter(outcomes[name].probes.values()), None)
-            distance = np.nan if other is None else np.linalg.norm(other.value[-1] - first.value[-1]) / size
+            distance = np.nan if other is None else _distance(first, other) / size
             if not distance <= within:
                 bad.append(f"{name} differs from {names[0]} by {distance:.2g}")
         return "; ".join(bad)
 
     return check
+
+
+def _distance(first: Record, other: Record) -> float:
+    """Return the largest distance at the times, or load factors, that two records share; nan if the ends differ."""
+    if first.t[-1] != other.t[-1]:
+        return float("nan")
+    _, these, those = np.intersect1d(first.t, other.t, return_indices=True)
+    return float(np.linalg.norm(first.value[these] - other.value[those], axis=1).max())
 
 
 def near(name: str, value: Sequence[float], within: float) -> Expectation:
@@ -110,6 +119,15 @@ def near(name: str, value: Sequence[float], within: float) -> Expectation:
             return f"{name}: no values"
         distance = float(np.abs(record.value[-1] - np.array(value)).max())
         return "" if distance <= within else f"{name}: {record.value[-1]} instead of {value}"
+
+    return check
+
+
+def never_wrong(name: str, like: str, within: float) -> Expectation:
+    """Expect a run to fail, or to agree with another: what it must not do is to end well with something else."""
+
+    def check(outcomes: Outcomes) -> str:
+        return agree(like, name, within=within)(outcomes) if outcomes[name].status == "ok" else ""
 
     return check
 

@@ -10,11 +10,23 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ancf import _core
+from ancf.bodies import Rectangle
+from ancf.errors import InputError, Mistake, show
 from ancf.materials import Material
+from ancf.run import Dynamic, Modes, Static
 from ancf.scene import Scene
 
 _OF_BODIES = ("element", "membrane", "curvature", "thickness", "divisions")
 _OF_MATERIALS = tuple(Material.model_fields)
+_DEFAULTS = {
+    **{
+        name: field.default
+        for cls in (Rectangle, Material, Static, Dynamic)
+        for name, field in cls.model_fields.items()
+    },
+    "membrane": "projected",
+    "curvature": "paper",
+}
 _EXCLUDED = {
     "step": ("rtol", "atol", "first_step", "max_step", "min_step"),
     "rtol": ("step", "force"),
@@ -67,8 +79,10 @@ class Variant:
         Raises
         ------
         InputError
-            If a body is a `Surface`.
+            If a body is a `Surface`, or the scene is run for its modes.
         """
+        if isinstance(scene.run, Modes):
+            raise InputError(Mistake(("run", "kind"), "must be static or dynamic to be compared", show("modes")))
         document = deepcopy(scene.document())
         for name, value in settings.items():
             if name == "mesh":
@@ -108,8 +122,9 @@ class Variant:
 
 
 def _replace(tables: Any, name: str, value: Any) -> None:
+    """Set a value in tables; what is as by default is left out, as in documents, so that equal scenes are equal."""
     for table in tables:
-        if value is None:
+        if value is None or _DEFAULTS.get(name) == value:
             table.pop(name, None)
         else:
             table[name] = list(value) if isinstance(value, tuple) else value
