@@ -1,7 +1,7 @@
 """Print the table of docs/shells.md: published shells, each solved by its scene file with nothing set by hand.
 
-Run it from any folder with ``python benchmarks/shells.py``; it takes some minutes. ``--plot DIR`` draws the deformed shells as
-well, ``--quick`` leaves out the slowest.
+Run it from any folder with ``python benchmarks/shells.py``; it takes some minutes. ``--plot DIR`` draws the deformed
+shells as well, ``--quick`` leaves out the slowest.
 """
 
 from __future__ import annotations
