@@ -46,10 +46,10 @@ def test_the_scene_in_the_documentation_runs(tmp_path: Path) -> None:
 
 
 def test_every_link_leads_somewhere() -> None:
-    for path in ROOT.glob("*.md"):
-        for target in re.findall(r"\]\(([^)#]+)\)", path.read_text(encoding="utf-8")):
+    for path in [*ROOT.glob("*.md"), *ROOT.glob("benchmarks/*.md"), *ROOT.glob("docs/**/*.md")]:
+        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):
             if not target.startswith("http"):
-                assert (ROOT / target).exists(), f"{path.name}: {target}"
+                assert (path.parent / target).exists(), f"{path}: {target}"
 
 
 def test_the_table_is_what_its_command_prints() -> None:

@@ -31,10 +31,12 @@ from ancf.errors import InputError, Interrupted, Mistake, SolveError
 from ancf.loads import Force, Gravity, LineLoad, Moment, Pressure
 from ancf.mapped import Surface
 from ancf.materials import Material
+from ancf.modal import ModalResult, modes
 from ancf.model import Model
+from ancf.plan import Plan, plan
 from ancf.probes import Probe
 from ancf.result import Energy, Record, Result
-from ancf.run import Dynamic, Static
+from ancf.run import Dynamic, Modes, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import simulate, solve_static
 from ancf.supports import Rotation, Shake, Support
@@ -51,8 +53,11 @@ __all__ = [
     "LineLoad",
     "Material",
     "Mistake",
+    "ModalResult",
     "Model",
+    "Modes",
     "Moment",
+    "Plan",
     "Pressure",
     "Probe",
     "Record",
@@ -68,6 +73,8 @@ __all__ = [
     "Surface",
     "__version__",
     "load_scene",
+    "modes",
+    "plan",
     "simulate",
     "solve_static",
 ]

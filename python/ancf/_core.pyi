@@ -16,7 +16,7 @@ _IndexArray: TypeAlias = NDArray[np.uint64]
 _At: TypeAlias = str | tuple[float, float]
 _History: TypeAlias = str | Sequence[tuple[float, float]]
 
-__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "info", "simulate", "solve_static"]
+__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "info", "modes", "simulate", "solve_static"]
 
 __version__: str
 
@@ -102,7 +102,10 @@ class Model:
     def tangent(
         self, q: _FloatArray, t: float = 0.0, previous: _FloatArray | None = None
     ) -> tuple[_IndexArray, _IndexArray, _FloatArray]: ...  # rows, columns, values of d(Q_k - Q_e)/dq, free coordinates
+    def factorize(self) -> int: ...  # of the tangent that was made last: number of negative pivots
+    def solve(self, right: _FloatArray) -> _FloatArray: ...  # (n,) with that factorisation, zero where fixed
     def mass(self) -> tuple[_IndexArray, _IndexArray, _FloatArray]: ...  # rows, cols, values over n coordinates
+    def samples(self, body: str, of: str) -> _FloatArray: ...  # "membrane" | "bending": (elements, points, 2)
     def locate(self, body: str, points: _FloatArray) -> None: ...  # InputError if a point is outside the body
     def evaluate(
         self, body: str, points: _FloatArray, quantity: str, q: _FloatArray, v: _FloatArray | None = None
@@ -141,7 +144,9 @@ class Run:
     @property
     def angular_momentum(self) -> _FloatArray: ...  # (states, 3) kg m2/s about the origin
     @property
-    def counts(self) -> dict[str, int]: ...  # elements, dofs, steps, rejected, unsolved, iterations, factorizations
+    def counts(
+        self,
+    ) -> dict[str, int]: ...  # elements, dofs, steps, rejected, unsolved, iterations, forces, factorizations
     @property
     def seconds(self) -> dict[str, float]: ...  # total, setup, assembly, factorization, solve
     @property
@@ -186,4 +191,13 @@ def simulate(
     threads: int | None,
     progress: Callable[[float], Any] | None,
 ) -> Run: ...
+def modes(
+    model: Model,
+    *,
+    count: int,
+    q: _FloatArray,  # (n,) the state about which the model oscillates
+    load_factor: float,  # of loads that follow the body
+    threads: int | None,
+    progress: Callable[[float], Any] | None,  # called with the number of modes found
+) -> tuple[Run, _FloatArray, _FloatArray]: ...  # (modes,) eigenvalues, 1/s2; (modes, n) shapes, x . M x = 1
 def info() -> dict[str, str]: ...  # versions of ancf-core and faer, threads, CPU features, SIMD lanes

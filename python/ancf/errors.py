@@ -7,12 +7,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import Any, Self
 
 from ancf import _core
-
-if TYPE_CHECKING:
-    from ancf.result import Result
 
 Path = tuple[str | int, ...]
 
@@ -122,33 +119,36 @@ def from_core(*path: str | int) -> Iterator[None]:
         raise InputError(Mistake((*path, error.argument), f"allowed is {error.allowed}", error.value)) from None
 
 
-class SolveError(RuntimeError):
+class _WithResult(BaseException):
+    """What happened, and what the run had by then."""
+
+    def __init__(self, message: str, result: Any) -> None:
+        super().__init__(message)
+        self.result = result
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, Any]]:
+        return type(self), (str(self), self.result)
+
+
+class SolveError(_WithResult, RuntimeError):
     """A run that failed half way.
 
     Parameters
     ----------
     message : str
         Where it failed, why, and what to try.
-    result : Result
+    result : Result or ModalResult
         Every state up to the last good one.
     """
 
-    def __init__(self, message: str, result: Result) -> None:
-        super().__init__(message)
-        self.result = result
 
-
-class Interrupted(KeyboardInterrupt):
+class Interrupted(_WithResult, KeyboardInterrupt):
     """A run that was stopped from outside, as by Ctrl-C.
 
     Parameters
     ----------
     message : str
         Where it stopped.
-    result : Result
+    result : Result or ModalResult
         Every state up to there.
     """
-
-    def __init__(self, message: str, result: Result) -> None:
-        super().__init__(message)
-        self.result = result

@@ -1,8 +1,9 @@
-"""A film of a result."""
+"""Films of results."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib as mpl
@@ -11,12 +12,14 @@ from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
 
 from ancf.errors import InputError, Mistake, show
-from ancf.plot import heading
+from ancf.modal import ModalResult
+from ancf.plot import heading, mode_name
 from ancf.result import Result
 from ancf.stage import Stage
 
 _FACETS = 600
 _FRAMES = 100
+_FRAMES_OF_MODES = 30
 _FRAMES_PER_SECOND = 20
 _DPI = 90
 
@@ -42,15 +45,40 @@ def animate(result: Result, path: str | os.PathLike[str], title: str = "") -> No
         _animate(result, path, title)
 
 
+def animate_mode(result: ModalResult, path: str | os.PathLike[str], title: str = "", mode: int | None = None) -> None:
+    """Write one mode as a film, see `ModalResult.animate`."""
+    shown = result.visible()
+    if mode is None and not shown:
+        raise InputError(Mistake(("result",), "must hold at least one mode to be drawn"))
+    number = shown[0] if mode is None else mode
+    q = result.oscillation(number, np.linspace(0, 2 * np.pi, _FRAMES_OF_MODES, endpoint=False))
+    name = mode_name(result, number)
+    with mpl.rc_context({"text.parse_math": False}):
+        figure = _figure()
+        stage = Stage(figure, result.model, q, _FACETS, rest=result.q, bar=False)
+        _film(path, figure, stage, [f"{title}, {name}" if title else name] * len(q), range(len(q)))
+
+
 def _animate(result: Result, path: str | os.PathLike[str], title: str) -> None:
+    figure = _figure()
+    stage = Stage(figure, result.model, result.q, _FACETS)
+    states = np.unique(np.linspace(0, len(result.t) - 1, _FRAMES).round().astype(int)).tolist()
+    _film(path, figure, stage, [heading(result, state, title) for state in states], states)
+
+
+def _figure() -> Figure:
+    return Figure(figsize=(7, 6), dpi=_DPI, layout="constrained")
+
+
+def _film(
+    path: str | os.PathLike[str], figure: Figure, stage: Stage, headings: Sequence[str], states: Sequence[int]
+) -> None:
     writer = check_film(path)
-    figure = Figure(figsize=(7, 6), dpi=_DPI, layout="constrained")
-    stage = Stage(figure, result, _FACETS)
     with writer.saving(figure, str(path), _DPI):
-        for state in np.unique(np.linspace(0, len(result.t) - 1, _FRAMES).round().astype(int)).tolist():
-            figure.suptitle(heading(result, state, title))
+        for frame, (name, state) in enumerate(zip(headings, states, strict=True)):
+            figure.suptitle(name)
             artists = stage.draw(state)
-            if state == 0:
+            if frame == 0:
                 # Laid out once: half the time, and nothing trembles.
                 figure.draw_without_rendering()
                 figure.set_layout_engine("none")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Annotated, Any, Self
 
 import numpy as np
@@ -40,6 +40,31 @@ class Input(BaseModel):
             super().__init__(**{name: _plain(value) for name, value in values.items()})
         except ValidationError as error:
             raise InputError(*_mistakes(error, type(self))) from None
+
+    def document(self) -> dict[str, Any]:
+        """Return what makes the same input, in the words of scene files, without what is as by default."""
+        tags = {key: getattr(type(self), key) for key in _TAGS if hasattr(type(self), key)}
+        return tags | {
+            name: _document(value)
+            for name, value in self
+            if type(self).model_fields[name].is_required() or value != type(self).model_fields[name].default
+        }
+
+
+_TAGS = ("kind", "shape")
+"""Class attributes that tell the classes of a table apart."""
+
+
+def _document(value: Any) -> Any:
+    match value:
+        case Input():
+            return value.document()
+        case tuple():
+            return [_document(item) for item in value]
+        case Mapping():
+            return {key: _document(item) for key, item in value.items()}
+        case _:
+            return value
 
 
 def _plain(value: Any) -> Any:

@@ -68,6 +68,10 @@ class Surface(Plate):
             raise ValueError("must be two pairs of increasing numbers")
         return domain
 
+    def document(self) -> dict[str, Any]:
+        """Raise `InputError`: a scene file cannot hold a function."""
+        raise InputError(Mistake(("position",), "a scene file cannot hold a function of Python"))
+
     def reference(self) -> _core.Shape:
         """Return the reference surface."""
         sides = [np.linspace(*ends, number + 1) for ends, number in zip(self.domain, self.divisions, strict=True)]

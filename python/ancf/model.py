@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Annotated, Self, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Annotated, Any, Literal, Self, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -63,7 +64,7 @@ class Model(Input):
     def _not_empty(cls, bodies: Mapping[str, Plate]) -> Mapping[str, Plate]:
         if not bodies:
             raise ValueError("must hold at least one body")
-        return bodies
+        return MappingProxyType(dict(bodies))
 
     @field_validator("supports", "loads", "probes")
     @classmethod
@@ -97,6 +98,20 @@ class Model(Input):
         mistakes.check()
         self._assembled = self.assemble("constant")
         return self
+
+    def __eq__(self, other: object) -> bool:
+        # The compiled model follows from the rest.
+        return isinstance(other, Model) and dict(self) == dict(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Callable[[type[Self], dict[str, Any]], Self], tuple[type[Self], dict[str, Any]]]:
+        # The compiled model is made anew in the copy.
+        return _make, (type(self), dict(self) | {"bodies": dict(self.bodies)})
+
+    def __deepcopy__(self, memo: dict[int, Any] | None = None) -> Self:
+        make, arguments = self.__reduce__()
+        return make(*arguments)
 
     def _assemble_bodies(self) -> _core.Model:
         core = _core.Model()
@@ -133,6 +148,51 @@ class Model(Input):
     def domain(self, body: str) -> Domain:
         """Return the ranges of the natural coordinates x and y of a body."""
         return self._assembled.domain(body)
+
+    def nodes(self, body: str) -> NDArray[np.float64]:
+        """Return the natural coordinates of the nodes of a body.
+
+        Parameters
+        ----------
+        body : str
+            Its name.
+
+        Returns
+        -------
+        ndarray, shape (nodes, 2)
+            Node after node, x fastest.
+
+        Raises
+        ------
+        InputError
+            If there is no such body.
+        """
+        self._check_body(body)
+        return self._assembled.nodes(body)
+
+    def samples(self, body: str, of: Literal["membrane", "bending"] = "bending") -> NDArray[np.float64]:
+        """Return where the elements of a body sample their strain: forces and stresses are most accurate there.
+
+        Parameters
+        ----------
+        body : str
+            Its name.
+        of : {"bending", "membrane"}, default "bending"
+            The strain: curvature or membrane strain, of solid elements the same.
+
+        Returns
+        -------
+        ndarray, shape (elements, points, 2)
+            Natural coordinates, for `evaluate` as ``samples.reshape(-1, 2)``.
+
+        Raises
+        ------
+        InputError
+            If there is no such body.
+        """
+        self._check_body(body)
+        with from_core():
+            return self._assembled.samples(body, of)
 
     def nodal_coordinates(self) -> NDArray[np.float64]:
         """Return all nodal coordinates at rest.
@@ -180,8 +240,8 @@ class Model(Input):
             If there is no such body or quantity, or a point is outside.
         """
         mistakes = Mistakes()
-        if body not in self.bodies:
-            mistakes.add(("body",), one_of(self.bodies, body), body)
+        with mistakes.gather():
+            self._check_body(body)
         if quantity not in QUANTITIES:
             mistakes.add(("quantity",), one_of(QUANTITIES, quantity), quantity)
         places = np.asarray(points, dtype=np.float64)
@@ -194,6 +254,14 @@ class Model(Input):
             return self._assembled.evaluate(body, places, quantity, q, v)
         except _core.InputError as error:
             raise InputError(Mistake(("points",), f"allowed is {error.allowed}", error.value)) from None
+
+    def _check_body(self, body: str) -> None:
+        if body not in self.bodies:
+            raise InputError(Mistake(("body",), one_of(self.bodies, body), show(body)))
+
+
+def _make(cls: type[_Item], values: dict[str, Any]) -> _Item:
+    return cls(**values)
 
 
 def _check_inside(core: _core.Model, body: str, at: tuple[float, float]) -> None:

@@ -7,7 +7,7 @@ import math
 import os
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import fields
 from pathlib import Path
 from typing import Any
@@ -15,11 +15,15 @@ from typing import Any
 import numpy as np
 
 from ancf.errors import InputError, Mistake
+from ancf.modal import ModalResult
 from ancf.result import Result
 from ancf.run import Static
 
 SUMMARY = "summary.json"
 STATES = "result.npz"
+PICTURE = "plate.png"
+FILMS = ("motion.gif", "motion.mp4")
+FIELDS = "fields.pvd"
 
 
 def make_folder(folder: Path) -> list[Path]:
@@ -59,6 +63,15 @@ def remove_folders(folders: list[Path]) -> None:
         folder.rmdir()
 
 
+def remove_extras(folder: Path) -> None:
+    """Remove the pictures and fields of an earlier run: the results that they show have been replaced."""
+    fields = (folder / FIELDS).with_suffix("")
+    for path in (*(folder / name for name in (PICTURE, *FILMS, FIELDS)), *fields.glob("[0-9]*.vtu")):
+        path.unlink(missing_ok=True)
+    with suppress(OSError):
+        fields.rmdir()
+
+
 @contextmanager
 def replacing(*paths: Path) -> Iterator[tuple[Path, ...]]:
     """Give temporary names for files, which take their places together when the `with` statement ends well."""
@@ -72,8 +85,8 @@ def replacing(*paths: Path) -> Iterator[tuple[Path, ...]]:
             source.unlink(missing_ok=True)
 
 
-def write_result(folder: Path, title: str, result: Result) -> None:
-    """Write summary.json and result.npz, the arrays t, q, v, a.
+def write_result(folder: Path, title: str, result: Result | ModalResult) -> None:
+    """Write summary.json and result.npz: the arrays t, q, v, a, or of modes frequency, eigenvalue, shapes, q.
 
     Parameters
     ----------
@@ -81,7 +94,7 @@ def write_result(folder: Path, title: str, result: Result) -> None:
         Where to; it exists.
     title : str
         Of the scene.
-    result : Result
+    result : Result or ModalResult
         What to write.
 
     Raises
@@ -89,20 +102,22 @@ def write_result(folder: Path, title: str, result: Result) -> None:
     OSError
         If a file cannot be written; an earlier run's files are left as they were.
     """
+    names = ("frequency", "eigenvalue", "shapes", "q") if isinstance(result, ModalResult) else ("t", "q", "v", "a")
+    arrays = {name: getattr(result, name) for name in names}
     with replacing(folder / STATES, folder / SUMMARY) as (states, summary):
         with states.open("wb") as file:
-            np.savez_compressed(file, t=result.t, q=result.q, v=result.v, a=result.a)
+            np.savez_compressed(file, **arrays)
         summary.write_text(json.dumps(summarize(title, result), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def summarize(title: str, result: Result) -> dict[str, Any]:
+def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
     """Return what summary.json holds; numbers that are not finite become None.
 
     Parameters
     ----------
     title : str
         Of the scene.
-    result : Result
+    result : Result or ModalResult
         What to summarize.
 
     Returns
@@ -110,18 +125,20 @@ def summarize(title: str, result: Result) -> dict[str, Any]:
     dict
         Of plain Python values.
     """
-    energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
     summary: dict[str, Any] = {
         "title": title,
         "status": result.status,
-        "reached": _plain(result.reached),
+        "reached": len(result.frequency) if isinstance(result, ModalResult) else _plain(result.reached),
         "reason": result.reason,
         "advice": result.advice,
         "counts": _plain(result.counts),
         "seconds": _plain(result.seconds),
-        "probes": {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()},
-        "energy": _plain(energy),
     }
+    if isinstance(result, ModalResult):
+        return summary | {"modes": {"frequency": _plain(result.frequency)}}
+    energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
+    probes = {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()}
+    summary |= {"probes": probes, "energy": _plain(energy)}
     if isinstance(result.run, Static):
         summary["jumps"] = _plain(result.jumps)
     return summary

@@ -1,16 +1,20 @@
-"""A picture of a result: the bodies at rest and deformed, and what the probes recorded."""
+"""Pictures of results: the bodies at rest and deformed, what the probes recorded, mode shapes."""
 
 from __future__ import annotations
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
+from ancf.errors import InputError, Mistake
+from ancf.modal import ModalResult
 from ancf.probes import QUANTITIES, Probe, Quantity
 from ancf.result import Result
 from ancf.stage import Stage
 
 _FACETS = 2500
+_FACETS_OF_MODES = 900
 _EARLIER_SHAPES = 3
 _STYLES = ("-", "--", ":")
 
@@ -42,8 +46,35 @@ def _plot(result: Result, title: str) -> Figure:
     parts = figure.subfigures(1, columns, squeeze=False, width_ratios=(1.3, 1)[:columns])[0]
     if probes:
         _draw_records(parts[1], result)
-    Stage(parts[0], result, _FACETS).draw(len(result.t) - 1, between=_EARLIER_SHAPES)
+    Stage(parts[0], result.model, result.q, _FACETS).draw(len(result.t) - 1, between=_EARLIER_SHAPES)
     return figure
+
+
+def plot_modes(result: ModalResult, title: str = "", count: int = 6) -> Figure:
+    """Draw the shapes of the first modes that are not rigid, see `ModalResult.plot`."""
+    with mpl.rc_context({"text.parse_math": False}):
+        return _plot_modes(result, title, count)
+
+
+def _plot_modes(result: ModalResult, title: str, count: int) -> Figure:
+    shown = result.visible()[:count]
+    if not shown:
+        raise InputError(Mistake(("result",), "must hold at least one mode to be drawn"))
+    columns = min(3, len(shown))
+    rows = -(-len(shown) // columns)
+    figure = Figure(figsize=(4.2 * columns, 3.6 * rows + 0.6), dpi=130, layout="constrained")
+    figure.suptitle(title, fontsize="x-large")
+    parts = figure.subfigures(rows, columns, squeeze=False).ravel()
+    for part, mode in zip(parts, shown, strict=False):
+        part.suptitle(mode_name(result, mode))
+        q = result.oscillation(mode, [np.pi / 2])
+        Stage(part, result.model, q, _FACETS_OF_MODES, rest=result.q, bar=False).draw(0)
+    return figure
+
+
+def mode_name(result: ModalResult, mode: int) -> str:
+    """Say which mode it is, counted from 1, and its frequency."""
+    return f"mode {mode + 1}: {result.frequency[mode]:.4g} Hz"
 
 
 def heading(result: Result, state: int, title: str) -> str:
@@ -71,8 +102,8 @@ def _draw_quantity(
     marker = "o" if len(result.t) < 20 else ""
     for probe in probes:
         record = result.probes[probe.name]
-        for values, component, style in zip(record.value.T, components, _STYLES, strict=True):
-            label = f"{probe.name} {component}"
+        for values, component, style in zip(record.value.T, components, _STYLES, strict=False):
+            label = f"{probe.name} {component}".rstrip()
             axes.plot(record.t, values, style, marker=marker, markersize=3.5, color=colours[probe.name], label=label)
     axes.set_ylabel(" / ".join(part for part in (quantity.replace("_", " "), unit) if part))
     axes.grid(alpha=0.25)

@@ -19,7 +19,17 @@ Quantity: TypeAlias = Literal[
     "moment",
     "shear_force",
     "stress_top",
+    "stress_middle",
     "stress_bottom",
+    "cauchy_stress_top",
+    "cauchy_stress_middle",
+    "cauchy_stress_bottom",
+    "principal_stress_top",
+    "principal_stress_middle",
+    "principal_stress_bottom",
+    "von_mises_top",
+    "von_mises_middle",
+    "von_mises_bottom",
 ]
 
 
@@ -32,6 +42,7 @@ class Meaning(NamedTuple):
 
 _VECTOR = ("x", "y", "z")
 _SYMMETRIC = ("xx", "yy", "xy")
+_PRINCIPAL = ("1", "2")
 
 QUANTITIES: dict[Quantity, Meaning] = {
     "position": Meaning("m", _VECTOR),
@@ -44,7 +55,17 @@ QUANTITIES: dict[Quantity, Meaning] = {
     "moment": Meaning("N", _SYMMETRIC),
     "shear_force": Meaning("N/m", ("xz", "yz")),
     "stress_top": Meaning("Pa", _SYMMETRIC),
+    "stress_middle": Meaning("Pa", _SYMMETRIC),
     "stress_bottom": Meaning("Pa", _SYMMETRIC),
+    "cauchy_stress_top": Meaning("Pa", _SYMMETRIC),
+    "cauchy_stress_middle": Meaning("Pa", _SYMMETRIC),
+    "cauchy_stress_bottom": Meaning("Pa", _SYMMETRIC),
+    "principal_stress_top": Meaning("Pa", _PRINCIPAL),
+    "principal_stress_middle": Meaning("Pa", _PRINCIPAL),
+    "principal_stress_bottom": Meaning("Pa", _PRINCIPAL),
+    "von_mises_top": Meaning("Pa", ("",)),
+    "von_mises_middle": Meaning("Pa", ("",)),
+    "von_mises_bottom": Meaning("Pa", ("",)),
 }
 
 
@@ -62,10 +83,12 @@ class Probe(OnBody):
     quantity : str, default "position"
         "position" or "displacement", m, "velocity", m/s, or the unit "normal", components x, y, z;
         "membrane_strain" or "curvature", 1/m, components xx, yy and doubled xy; "membrane_force", N/m, "moment",
-        N m/m, "stress_top" and "stress_bottom", Pa, second Piola-Kirchhoff on the face that the normal points to and on
-        the other one, components xx, yy, xy; "shear_force", N/m, components xz, yz, what the part beyond a cut exerts
-        along the normal. These have their components in the orthonormal frame of the shape at rest: x along r_x, y
-        across it in the tangent plane.
+        N m/m, components xx, yy, xy; "shear_force", N/m, components xz, yz, what the part beyond a cut exerts along the
+        normal. Stresses, Pa, on the face that the normal points to, in the middle and on the other face, ending in
+        "_top", "_middle" and "_bottom": "stress", second Piola-Kirchhoff, and "cauchy_stress", components xx, yy, xy;
+        "principal_stress", the larger and the smaller principal value of the Cauchy stress in the surface; "von_mises"
+        of it. Components are those of the orthonormal frame of the shape at rest: x along r_x, y across it in the
+        tangent plane; of Cauchy stresses, of the same frame of the deformed surface.
 
     Raises
     ------

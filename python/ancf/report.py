@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from ancf.modal import ModalResult
 from ancf.probes import QUANTITIES
 from ancf.result import Result
 
+_MODES = 20
 
-def describe(title: str, result: Result) -> str:
+
+def describe(title: str, result: Result | ModalResult) -> str:
     """Say in a few lines how a run went and where it ended.
 
     Parameters
     ----------
     title : str
         Of the scene.
-    result : Result
+    result : Result or ModalResult
         What to describe.
 
     Returns
@@ -23,14 +28,25 @@ def describe(title: str, result: Result) -> str:
     str
         Several lines.
     """
+    counts = ", ".join(f"{number} {name}" for name, number in result.counts.items())
+    end = f"  {counts}; {result.seconds['total']:.3g} s"
+    if isinstance(result, ModalResult):
+        return "\n".join([f"{title or 'Run'}: {result.status}, {len(result.frequency)} modes", *_modes(result), end])
     place = f"{result.run.parameter} = {result.reached:.6g} {result.run.unit}".rstrip()
     if len(result.jumps):
         place += f", jumped at {', '.join(f'{t:.4g}' for t in result.jumps)}"
-    counts = ", ".join(f"{number} {name}" for name, number in result.counts.items())
     last = _last_state(result) if len(result.t) else []
-    return "\n".join(
-        [f"{title or 'Run'}: {result.status}, {place}", *last, f"  {counts}; {result.seconds['total']:.3g} s"]
-    )
+    return "\n".join([f"{title or 'Run'}: {result.status}, {place}", *last, end])
+
+
+def _modes(result: ModalResult) -> list[str]:
+    notes = {0: "  no stiffness", -1: "  unstable: grows, times 2 pi, at this rate"}
+    rows = [
+        f"  mode {number:<4} {frequency:13.6g} Hz{notes.get(int(np.sign(frequency)), '')}"
+        for number, frequency in enumerate(result.frequency[:_MODES], 1)
+    ]
+    more = len(result.frequency) - _MODES
+    return [*rows, f"  and {more} more"] if more > 0 else rows
 
 
 def _last_state(result: Result) -> list[str]:

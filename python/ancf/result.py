@@ -15,6 +15,7 @@ from ancf.run import Dynamic, Static
 
 if TYPE_CHECKING:
     import os
+    from collections.abc import Sequence
 
     from matplotlib.figure import Figure
 
@@ -94,7 +95,8 @@ class Result:
     negative_pivots : ndarray of int, shape (states,)
         Negative eigenvalues of the tangent, 0 where the equilibrium is stable; -1 where they were not counted.
     counts : dict of str to int
-        elements, dofs, steps, rejected (of these unsolved: Newton failed), iterations, factorizations.
+        elements, dofs, steps, rejected (of these unsolved: Newton failed), iterations, forces (evaluations),
+        factorizations.
     seconds : dict of str to float
         total, setup, assembly, factorization, solve.
     """
@@ -146,6 +148,11 @@ class Result:
             counts=core.counts,
             seconds=core.seconds,
         )
+
+    @property
+    def states(self) -> int:
+        """How many states there are."""
+        return len(self.t)
 
     def evaluate(self, body: str, points: ArrayLike, quantity: Quantity) -> FloatArray:
         """Return a quantity at material points in every state.
@@ -228,3 +235,34 @@ class Result:
         from ancf.film import animate  # noqa: PLC0415  As above.
 
         animate(self, path, title)
+
+    def write_fields(
+        self,
+        path: str | os.PathLike[str],
+        subdivisions: int | None = None,
+        quantities: Sequence[Quantity] | None = None,
+    ) -> None:
+        """Write all states as files for ParaView and PyVista; needs ``ancf[fields]``.
+
+        Parameters
+        ----------
+        path : str or path
+            The collection to open, "fields.pvd", which gives every state its time or load factor. The states are in a
+            folder beside it, "fields/00000.vtu" and so on: the middle surfaces with the quantities at their points, the
+            natural coordinates of these, and for each facet the number of its body.
+        subdivisions : int, optional
+            Facets along each side of an element; from 12 for one element to 1 for many if left out.
+        quantities : sequence of str, optional
+            Of those of `Probe`. If left out: displacement, velocity in motion, normal, membrane_force, moment,
+            shear_force, stress and von_mises of the faces and the middle.
+
+        Raises
+        ------
+        InputError
+            If the file has another ending, a quantity does not exist, or PyVista is missing.
+        OSError
+            If a file cannot be written; an earlier run's files are left as they were.
+        """
+        from ancf.fields import write_fields  # noqa: PLC0415  As above.
+
+        write_fields(self, path, subdivisions, quantities)

@@ -1,4 +1,4 @@
-"""Kinds of run: statics and motion, with their options."""
+"""Kinds of run: statics, motion and modes, with their options."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _INTERVALS = 100
 _MOST_OUTPUTS = 1_000_000
 
 Method: TypeAlias = Literal[
-    "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk"
+    "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk", "rigid"
 ]
 ProgressCall: TypeAlias = Callable[[float], Any] | None
 
@@ -114,7 +114,7 @@ class Static(_Run):
         for body, motion in model.rigid_motions():
             mistakes.add(("supports",), f"the body {body} can still move: {motion}; in statics supports must hold it")
         if any(isinstance(load, Gravity) for load in model.loads):
-            _check_density(model, mistakes, "where gravity acts")
+            check_density(model, mistakes, "where gravity acts")
         mistakes.check()
 
     def start(self, core: _core.Model, threads: int | None, progress: ProgressCall) -> _core.Run:
@@ -157,7 +157,7 @@ class Dynamic(_Run):
     method : str, default "hht"
         Implicit of order 2: "hht" (HHT-alpha), "generalized_alpha", "newmark" (trapezoidal rule), "tr_bdf2" (L-stable)
         and "energy_momentum" (keeps energy and momenta). Of order 4: "esdirk" (L-stable). Explicit: "verlet" of order
-        2, "rk" (Dormand and Prince) of order 5.
+        2, "rk" (Dormand and Prince) of order 5. "rigid", of order 5: no body deforms.
     alpha : float, optional
         Of "hht", from -1/3 to 0; -0.05 if left out.
     rho_inf : float, optional
@@ -174,8 +174,8 @@ class Dynamic(_Run):
         Of the last correction, relative to the size of the model.
     max_iterations : int, default 30
         A step that needs more is cut with error control; otherwise the run fails.
-    reuse : bool, default False
-        Keep factorisations over iterations and steps while they converge fast.
+    reuse : bool, default True
+        Keep factorisations over iterations and steps while they converge fast: modified Newton.
 
     Raises
     ------
@@ -202,7 +202,7 @@ class Dynamic(_Run):
     outputs: Sequence[float] | None = None
     every: Positive | None = None
     lumped: bool = False
-    reuse: bool = False
+    reuse: bool = True
 
     @model_validator(mode="after")
     def _agree(self) -> Self:
@@ -257,7 +257,7 @@ class Dynamic(_Run):
     def check(self, model: Model) -> None:
         """Raise `InputError` if a body has no mass or a load is made for statics."""
         mistakes = Mistakes()
-        _check_density(model, mistakes, "in motion")
+        check_density(model, mistakes, "in motion")
         for index, load in enumerate(model.loads):
             if load.history == "ramp":
                 allowed = "is for statics; in motion allowed are constant and [[t, factor], ...]"
@@ -296,11 +296,54 @@ class Dynamic(_Run):
         )
 
 
-def _check_density(model: Model, mistakes: Mistakes, where: str) -> None:
+class Modes(Input):
+    """Natural frequencies and mode shapes of small oscillations, those with the smallest frequencies.
+
+    Parameters
+    ----------
+    count : int, default 10
+        How many, rigid motions of free bodies included.
+    load_factor : float, default 0.0
+        The model oscillates about its equilibrium at this load factor, found by statics first: prestressed modes. At 0,
+        about the shape at rest: loads do not count.
+
+    Raises
+    ------
+    InputError
+        If a value is impossible.
+    """
+
+    kind: ClassVar[str] = "modes"
+    parameter: ClassVar[str] = "modes"
+    unit: ClassVar[str] = "modes"
+    history: ClassVar[History] = "ramp"
+
+    count: PositiveInt = 10
+    load_factor: float = 0.0
+
+    def check(self, model: Model) -> None:
+        """Raise `InputError` if there are fewer modes, a body has no mass, or with loads a body can move rigidly."""
+        mistakes = Mistakes()
+        check_density(model, mistakes, "where it oscillates")
+        if self.count > model.dofs:
+            mistakes.add(("count",), f"must not be greater than {model.dofs}, the coordinates not fixed", self.count)
+        if self.load_factor == 0:
+            for index, load in enumerate(model.loads):
+                if load.history not in (None, "ramp"):
+                    allowed = "acts at load factor 0, too: give the run a load_factor, or the load the history ramp"
+                    mistakes.add(("loads", index, "history"), allowed, load.history)
+        else:
+            with mistakes.gather():
+                Static(load_factors=(self.load_factor,)).check(model)
+        mistakes.check()
+
+
+def check_density(model: Model, mistakes: Mistakes, where: str) -> None:
+    """Note as mistakes the bodies that have no mass."""
     for name, body in model.bodies.items():
         if body.material.density == 0:
             path = ("bodies", name, "material", "density")
             mistakes.add(path, f"must be greater than 0 {where}", body.material.density)
 
 
-Run: TypeAlias = Annotated[Static | Dynamic, PlainValidator(table(Static, Dynamic, key="kind"))]
+Run: TypeAlias = Annotated[Static | Dynamic | Modes, PlainValidator(table(Static, Dynamic, Modes, key="kind"))]

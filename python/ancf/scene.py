@@ -6,11 +6,12 @@ import os
 import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any
 
+import tomli_w
 from pydantic import PlainValidator, ValidationInfo, field_validator
 
 from ancf.bodies import SHAPES, Plate
@@ -18,11 +19,13 @@ from ancf.errors import InputError, Mistake, Mistakes, one_of
 from ancf.inputs import Input, table
 from ancf.loads import Load
 from ancf.materials import Material
+from ancf.modal import ModalResult, find_modes
 from ancf.model import Model
+from ancf.output import replacing
 from ancf.probes import Probe
 from ancf.progress import Progress
 from ancf.result import Result
-from ancf.run import Dynamic, Run, Static
+from ancf.run import Dynamic, Modes, Run, Static
 from ancf.solve import solve
 from ancf.supports import Support
 
@@ -40,13 +43,86 @@ class Scene:
         What it is called.
     model : Model
         What to run.
-    run : Static or Dynamic
+    run : Static, Dynamic or Modes
         How to run it.
+    material_names : mapping of str to str, optional
+        What the material of each body is called; like the body if left out.
     """
 
     title: str
     model: Model
-    run: Static | Dynamic
+    run: Static | Dynamic | Modes
+    material_names: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, document: Mapping[str, Any]) -> Scene:
+        """Make a scene of the tables of a scene file.
+
+        Parameters
+        ----------
+        document : mapping
+            Tables and values, as `tomllib` reads them.
+
+        Returns
+        -------
+        Scene
+            Ready to be run.
+
+        Raises
+        ------
+        InputError
+            If there are mistakes in it.
+        """
+        scene = _File(**document)
+        material_names = {name: body["material"] for name, body in document["body"].items()}
+        with _scene_paths(material_names):
+            model = Model(bodies=scene.body, supports=scene.support, loads=scene.load, probes=scene.probe)
+            scene.run.check(model)
+        return cls(scene.title, model, scene.run, material_names)
+
+    def document(self) -> dict[str, Any]:
+        """Return the tables of the scene file that makes the same scene.
+
+        Returns
+        -------
+        dict
+            Of plain Python values; `Scene.of` takes it.
+
+        Raises
+        ------
+        InputError
+            If a body is a `Surface`: a scene file cannot hold a function.
+        """
+        bodies, materials = {}, {}
+        mistakes = Mistakes()
+        for name, body in self.model.bodies.items():
+            material = self.material_names.get(name, name)
+            materials[material] = body.material.document()
+            with mistakes.gather("body", name):
+                bodies[name] = body.document() | {"material": material}
+        mistakes.check()
+        items = {"support": self.model.supports, "load": self.model.loads, "probe": self.model.probes}
+        lists = {key: [item.document() for item in values] for key, values in items.items() if values}
+        return {"title": self.title, "material": materials, "body": bodies, **lists, "run": self.run.document()}
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the scene as a file that `load_scene` and ``ancf run`` take; an earlier file is replaced in one go.
+
+        Parameters
+        ----------
+        path : str or path
+            The TOML file.
+
+        Raises
+        ------
+        InputError
+            If a body is a `Surface`: a scene file cannot hold a function.
+        OSError
+            If the file cannot be written.
+        """
+        text = tomli_w.dumps(self.document())
+        with replacing(Path(path)) as (file,):
+            file.write_text(text, encoding="utf-8")
 
     def solve(
         self,
@@ -56,7 +132,7 @@ class Scene:
         threads: int | None = None,
         progress: Progress = None,
         throw: bool = True,
-    ) -> Result:
+    ) -> Result | ModalResult:
         """Run the scene.
 
         Parameters
@@ -66,8 +142,8 @@ class Scene:
 
         Returns
         -------
-        Result
-            The state at the start, then one for each output.
+        Result or ModalResult
+            The state at the start, then one for each output; or of a run of the kind "modes" these.
 
         Raises
         ------
@@ -84,6 +160,8 @@ class Scene:
         elif checkpoint is not None or resume is not None:
             raise InputError(Mistake(("checkpoint",), "is for motion only"))
         with _scene_paths({}):
+            if isinstance(self.run, Modes):
+                return find_modes(self.model, self.run, threads=threads, progress=progress, throw=throw)
             return solve(self.model, self.run, threads=threads, progress=progress, throw=throw, start=start)
 
 
@@ -105,13 +183,7 @@ def load_scene(path: str | os.PathLike[str]) -> Scene:
     InputError
         If there is no such file, it is not TOML, or there are mistakes in it.
     """
-    document = _read(Path(path))
-    scene = _File(**document)
-    material_names = {name: body["material"] for name, body in document["body"].items()}
-    with _scene_paths(material_names):
-        model = Model(bodies=scene.body, supports=scene.support, loads=scene.load, probes=scene.probe)
-        scene.run.check(model)
-    return Scene(scene.title, model, scene.run)
+    return Scene.of(_read(Path(path)))
 
 
 class _File(Input):

@@ -98,7 +98,7 @@ def simulate(
     newton: Literal["mip", "plain"] = "mip",
     tolerance: float = 1e-8,
     max_iterations: int = 30,
-    reuse: bool = False,
+    reuse: bool = True,
     checkpoint: str | os.PathLike[str] | None = None,
     resume: str | os.PathLike[str] | None = None,
     threads: int | None = None,
@@ -176,8 +176,7 @@ def solve(
     start: _Start | None = None,
 ) -> Result:
     """Run a model in any way; what `solve_static`, `simulate` and scenes have in common."""
-    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or not 1 <= threads <= 1024):
-        raise InputError(Mistake(("threads",), "must be a whole number from 1 to 1024", show(threads)))
+    check_threads(threads)
     run.check(model)
     core = model.assemble(run.history)
     with meter(progress, run.end, run.unit) as call, from_core():
@@ -191,6 +190,12 @@ def solve(
     if throw and result.status == "failed":
         raise SolveError(f"the run failed at {place}: {result.reason}. Try: {result.advice}", result)
     return result
+
+
+def check_threads(threads: int | None) -> None:
+    """Raise `InputError` unless `threads` is a possible number of them."""
+    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or not 1 <= threads <= 1024):
+        raise InputError(Mistake(("threads",), "must be a whole number from 1 to 1024", show(threads)))
 
 
 def _stopped(cause: BaseException, place: str, result: Result) -> BaseException:

@@ -16,8 +16,8 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection  # typ
 from numpy.typing import NDArray
 
 from ancf.errors import InputError, Mistake
+from ancf.model import Model
 from ancf.places import points_at
-from ancf.result import Result
 from ancf.surface import Grid, quads
 
 FloatArray = NDArray[np.float64]
@@ -31,41 +31,56 @@ _SUPPORT = "#c1272d"
 
 
 class Stage:
-    """Axes in space with equal scales, large enough for every state of a result.
+    """Axes in space with equal scales, large enough for every state.
 
     Parameters
     ----------
     figure : Figure or SubFigure
         Where to draw.
-    result : Result
-        What to draw.
+    model : Model
+        Whose bodies to draw.
+    q : ndarray, shape (states, n)
+        The states.
     facets : int
         About how many for each body.
+    rest : ndarray, shape (n,), optional
+        The state from which bodies have moved; the one at rest if left out.
+    bar : bool, default True
+        Show what the colours mean.
 
     Raises
     ------
     InputError
-        If the result has no states.
+        If there are no states.
     """
 
-    def __init__(self, figure: FigureBase, result: Result, facets: int) -> None:
-        if not len(result.t):
+    def __init__(
+        self,
+        figure: FigureBase,
+        model: Model,
+        q: FloatArray,
+        facets: int,
+        *,
+        rest: FloatArray | None = None,
+        bar: bool = True,
+    ) -> None:
+        if not len(q):
             raise InputError(Mistake(("result",), "must hold at least one state to be drawn"))
-        self._result = result
-        model = result.model
+        self._model, self._q = model, q
         self._grids = [Grid.of(model, body, facets) for body in model.bodies]
-        some = result.q[np.unique(np.linspace(0, len(result.t) - 1, _STATES).round().astype(int))]
-        rest = model.nodal_coordinates()[None]
-        self._rest = [grid.positions(model, rest)[0] for grid in self._grids]
+        some = q[np.unique(np.linspace(0, len(q) - 1, _STATES).round().astype(int))]
+        start = (model.nodal_coordinates() if rest is None else rest)[None]
+        self._rest = [grid.positions(model, start)[0] for grid in self._grids]
         shapes = [grid.positions(model, some) for grid in self._grids]
         moved = [np.linalg.norm(shape - rest, axis=-1) for shape, rest in zip(shapes, self._rest, strict=True)]
         self._scale = Normalize(0, max(float(np.nanmax(distance)) for distance in moved) or 1)
         # Axes in space have no type stubs. Drawn in the order of zorder, marks stay visible in front of a surface.
         self._axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
         self._fit(np.concatenate([shape.reshape(-1, 3) for shape in (*shapes, *self._rest)]))
-        figure.colorbar(
-            ScalarMappable(self._scale, _COLOURS), ax=self._axes, label="displacement / m", shrink=0.5, pad=0.12
-        )
+        if bar:
+            figure.colorbar(
+                ScalarMappable(self._scale, _COLOURS), ax=self._axes, label="displacement / m", shrink=0.5, pad=0.12
+            )
 
     def _fit(self, points: FloatArray) -> None:
         low, high = np.nanmin(points, axis=0), np.nanmax(points, axis=0)
@@ -99,7 +114,7 @@ class Stage:
         steps = np.unique(np.linspace(0, state, between + 2).round().astype(int))
         drawn = []
         for grid, rest in zip(self._grids, self._rest, strict=True):
-            *earlier, current = grid.positions(self._result.model, self._result.q[steps])
+            *earlier, current = grid.positions(self._model, self._q[steps])
             for shape in (rest, *earlier[1:]):
                 drawn += self._draw_faint(shape)
             drawn += self._draw_solid(grid, current, rest)
@@ -124,10 +139,10 @@ class Stage:
         return [self._axes.add_collection3d(faces), self._axes.add_collection3d(lines)]
 
     def _draw_supports(self, state: int) -> list[Artist]:
-        model = self._result.model
+        model = self._model
         points = [
             model.evaluate(support.body, points_at(support.at, model.domain(support.body), 7), "position", q)[0]
-            for q in [self._result.q[[state]]]
+            for q in [self._q[[state]]]
             for support in model.supports
         ]
         if not points:
@@ -136,10 +151,10 @@ class Stage:
         return [self._axes.scatter(*xyz.T, marker="^", s=38, color=_SUPPORT, depthshade=False, zorder=4)]
 
     def _draw_probes(self, state: int) -> list[Artist]:
-        model = self._result.model
+        model = self._model
         drawn: list[Artist] = []
         for index, probe in enumerate(model.probes):
-            path = model.evaluate(probe.body, [probe.at], "position", self._result.q[: state + 1])[:, 0]
+            path = model.evaluate(probe.body, [probe.at], "position", self._q[: state + 1])[:, 0]
             drawn += self._axes.plot(*path.T, color=f"C{index}", linewidth=1.2, zorder=4)
             dot = {"color": f"C{index}", "markersize": 7, "markeredgecolor": "white"}
             drawn += self._axes.plot(*path[-1:].T, "o", zorder=5, **dot)

@@ -34,10 +34,14 @@ class Grid:
     def of(cls, model: Model, body: str, facets: int) -> Grid:
         """Make a grid of about as many facets as wanted, from 1 to 12 along each side of an element."""
         divisions = model.bodies[body].divisions
-        per_element = int(np.clip(np.sqrt(facets / np.prod(divisions)), 1, 12))
+        return cls.divided(model, body, int(np.clip(np.sqrt(facets / np.prod(divisions)), 1, 12)))
+
+    @classmethod
+    def divided(cls, model: Model, body: str, per_element: int) -> Grid:
+        """Make a grid with so many facets along each side of an element."""
         sides = [
             np.linspace(low, high, number * per_element + 1)
-            for (low, high), number in zip(model.domain(body), divisions, strict=True)
+            for (low, high), number in zip(model.domain(body), model.bodies[body].divisions, strict=True)
         ]
         return cls(body, per_element, np.stack(np.meshgrid(*sides, indexing="ij"), axis=-1))
 

@@ -1,18 +1,35 @@
 """Motions: rigid ones exact, the pendulum's energy, plate frequencies."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from ancf.reference import GeneralizedAlpha, Model, RectangleMesh, simulate
-from ancf.reference.thin36 import MembraneRule
+from ancf.reference import (
+    EnergyMomentum,
+    GeneralizedAlpha,
+    Method,
+    Model,
+    NewtonOptions,
+    RectangleMesh,
+    RungeKutta,
+    Verlet,
+    simulate,
+)
+from ancf.reference.thin import MembraneRule
 
-METHODS = [
+METHODS: list[Method] = [
     GeneralizedAlpha.hht(0.0),
     GeneralizedAlpha.hht(-0.05),
     GeneralizedAlpha.hht(-1 / 3),
     GeneralizedAlpha.generalized_alpha(0.0),
     GeneralizedAlpha.generalized_alpha(0.8),
+    RungeKutta.tr_bdf2(),
+    RungeKutta.esdirk(),
+    RungeKutta.dormand_prince(),
+    EnergyMomentum(),
+    Verlet(),
 ]
 
 
@@ -32,7 +49,7 @@ def test_special_cases() -> None:
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_free_fall(method: GeneralizedAlpha) -> None:
+def test_free_fall(method: Method) -> None:
     """An unsupported plate falls as a rigid body from the first step on."""
     mesh = RectangleMesh((0.3, 0.3), (2, 2))
     model = Model(mesh, thickness=0.01, E=1e5, nu=0.3, density=7810)
@@ -42,6 +59,44 @@ def test_free_fall(method: GeneralizedAlpha) -> None:
     expected = np.zeros_like(fall)
     expected[:, :, 0, 2] = -9.81 / 2 * motion.t[:, None] ** 2
     np.testing.assert_allclose(fall, expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("method", "order"),
+    [
+        (GeneralizedAlpha.generalized_alpha(0.8), 2),
+        (RungeKutta.tr_bdf2(), 2),
+        (RungeKutta.esdirk(), 4),
+        (RungeKutta.dormand_prince(), 5),
+        (EnergyMomentum(), 2),
+        (Verlet(), 2),
+    ],
+)
+def test_orders(method: Method, order: int) -> None:
+    """Halving the step divides the change of the end by 2**order."""
+    model, tight = pendulum(1), NewtonOptions(tolerance=1e-13)
+    ends = [simulate(model, 0.08, 8e-3 / 2**k, method, options=tight).q[-1] for k in range(3)]
+    changes = [np.abs(a - b).max() for a, b in pairwise(ends)]
+    assert np.log2(changes[0] / changes[1]) == pytest.approx(order, abs=0.25)
+
+
+def test_energy_momentum_keeps_both() -> None:
+    """A free plate that turns and bends: kinetic and strain energy, momentum and angular momentum stay to rounding."""
+    model = Model(RectangleMesh((0.3, 0.3), (1, 1)), thickness=0.01, E=1e6, nu=0.3, density=7810, membrane="full")
+    (x, y), bend = model.mesh.nodes.T - 0.15, 120.0
+    v = np.zeros((4, 3, 3))
+    v[:, 0] = np.stack([1 - 5 * y, 5 * x, bend * (x * x - y * y + x * y)], axis=1)
+    v[:, 1, 1], v[:, 2, 0] = 5, -5
+    v[:, 1, 2], v[:, 2, 2] = bend * (2 * x + y), bend * (x - 2 * y)
+    motion = simulate(model, 0.1, 2e-3, EnergyMomentum(), velocity=v.ravel(), options=NewtonOptions(tolerance=1e-13))
+    energies = motion.energies(model)
+    total = energies["kinetic"] + energies["membrane"] + energies["bending"]
+    assert (total - energies["kinetic"]).max() > 0.05 * total[0]
+    np.testing.assert_allclose(total, total[0], rtol=1e-11)
+    momenta = np.array(
+        [[model.momentum(v), model.angular_momentum(q, v)] for q, v in zip(motion.q, motion.v, strict=True)]
+    )
+    np.testing.assert_allclose(momenta, np.broadcast_to(momenta[0], momenta.shape), rtol=0, atol=1e-11 * momenta.max())
 
 
 def test_free_flight() -> None:

@@ -1,4 +1,4 @@
-"""Energy, force, tangent and mass of `thin36`."""
+"""Energy, force, tangent and mass of every element."""
 
 from itertools import product
 
@@ -6,34 +6,61 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ancf.reference import Material, Model, RectangleMesh, Thin36
+from ancf.reference import Material, Model, RectangleMesh, cylinder, plane, sphere
 from ancf.reference.arrays import FloatArray
+from ancf.reference.elements import ElementKind
 from ancf.reference.quadrature import gauss, square
-from ancf.reference.shape import THIN36
-from ancf.reference.thin36 import CurvatureKind, MembraneRule, projection
+from ancf.reference.shape import QUARTIC
+from ancf.reference.surface import SurfacePoints
+from ancf.reference.thin import CurvatureKind, MembraneRule, Thin, projection
 
 MEMBRANES: list[MembraneRule] = ["full", "lobatto", "projected"]
 CURVATURES: list[CurvatureKind] = ["paper", "koiter"]
-options = pytest.mark.parametrize(("membrane", "curvature"), list(product(MEMBRANES, CURVATURES)))
+THIN: list[tuple[ElementKind, MembraneRule]] = [
+    *(("thin36", membrane) for membrane in MEMBRANES),
+    ("thin48", "full"),
+    ("thin48", "projected"),
+]
+SOLID: list[tuple[ElementKind, MembraneRule, CurvatureKind]] = [
+    ("full48a", "projected", "paper"),
+    ("full48b", "projected", "paper"),
+]
+thin = pytest.mark.parametrize(("element", "membrane", "curvature"), [(*t, c) for t, c in product(THIN, CURVATURES)])
+options = pytest.mark.parametrize(
+    ("element", "membrane", "curvature"), [*((*t, c) for t, c in product(THIN, CURVATURES)), *SOLID]
+)
 
 
-def plate(membrane: MembraneRule = "projected", curvature: CurvatureKind = "paper", thickness: float = 0.3) -> Model:
-    mesh = RectangleMesh((1.0, 1.4), (1, 2))
-    return Model(mesh, thickness=thickness, E=2.0, nu=0.3, density=3.0, membrane=membrane, curvature=curvature)
+def plate(
+    element: ElementKind = "thin36",
+    membrane: MembraneRule = "projected",
+    curvature: CurvatureKind = "paper",
+    thickness: float = 0.3,
+) -> Model:
+    return Model(
+        RectangleMesh((1.0, 1.4), (1, 2)),
+        thickness=thickness,
+        E=2.0,
+        nu=0.3,
+        density=3.0,
+        element=element,
+        membrane=membrane,
+        curvature=curvature,
+    )
 
 
-def moved(q: FloatArray, seed: int, deformation: float) -> FloatArray:
+def moved(model: Model, seed: int, deformation: float) -> FloatArray:
     """Random rotation and translation, and a random change of all coordinates."""
     rng = np.random.default_rng(seed)
-    vectors = q.reshape(-1, 3) @ Rotation.random(rng=rng).as_matrix().T
-    vectors[::3] += rng.normal(size=3)
+    vectors = model.reference.reshape(-1, 3) @ Rotation.random(rng=rng).as_matrix().T
+    vectors[:: len(model.vectors)] += rng.normal(size=3)
     return (vectors + deformation * rng.normal(size=vectors.shape)).ravel()
 
 
 def test_energy_written_out() -> None:
     """(25) to (34) of the paper, point by point, for full quadrature and the paper's curvature."""
-    model = plate("full", thickness=0.1)
-    q = moved(model.reference, 0, 0.2)
+    model = plate(membrane="full", thickness=0.1)
+    q = moved(model, 0, 0.2)
     E, nu, h = 2.0, 0.3, 0.1
     membrane = bending = 0.0
     nodal = q.reshape(-1, 3, 3)
@@ -41,7 +68,7 @@ def test_energy_written_out() -> None:
         e = nodal[cell].reshape(12, 3)
         for n in (4, 3):
             rule = square(gauss(n))
-            for weight, T in zip(rule.weights * 1.0 * 0.7, THIN36.table(rule.points, 1.0, 0.7), strict=True):
+            for weight, T in zip(rule.weights * 1.0 * 0.7, QUARTIC.table(rule.points, 1.0, 0.7), strict=True):
                 r_x, r_y, r_xx, r_yy, r_xy = T[1:] @ e
                 if n == 4:
                     xx, yy, xy = (r_x @ r_x - 1) / 2, (r_y @ r_y - 1) / 2, r_x @ r_y
@@ -57,17 +84,17 @@ def test_energy_written_out() -> None:
 
 
 @options
-def test_rigid_motion(membrane: MembraneRule, curvature: CurvatureKind) -> None:
-    model = plate(membrane, curvature)
-    q = moved(model.reference, 1, 0.0)
+def test_rigid_motion(element: ElementKind, membrane: MembraneRule, curvature: CurvatureKind) -> None:
+    model = plate(element, membrane, curvature)
+    q = moved(model, 1, 0.0)
     np.testing.assert_allclose(model.energy(q), 0, atol=1e-28)
     np.testing.assert_allclose(model.internal_force(q), 0, atol=1e-14)
 
 
 @options
-def test_force_and_tangent(membrane: MembraneRule, curvature: CurvatureKind) -> None:
-    model = plate(membrane, curvature)
-    q, h = moved(model.reference, 2, 0.1), 1e-5
+def test_force_and_tangent(element: ElementKind, membrane: MembraneRule, curvature: CurvatureKind) -> None:
+    model = plate(element, membrane, curvature)
+    q, h = moved(model, 2, 0.1), 1e-5
     force, K = model.internal_force(q), model.tangent(q).toarray()
     for i in range(0, model.coordinates, 4):
         step = np.zeros_like(q)
@@ -80,19 +107,24 @@ def test_force_and_tangent(membrane: MembraneRule, curvature: CurvatureKind) -> 
 
 
 @options
-def test_six_zero_modes(membrane: MembraneRule, curvature: CurvatureKind) -> None:
+def test_six_zero_modes(element: ElementKind, membrane: MembraneRule, curvature: CurvatureKind) -> None:
     """Of a free square with thickness / side 0.3, one element and four."""
     for n in (1, 2):
         mesh = RectangleMesh((1.0, 1.0), (n, n))
-        model = Model(mesh, thickness=0.3, E=1.0, nu=0.3, density=1.0, membrane=membrane, curvature=curvature)
-        eigenvalues = np.linalg.eigvalsh(model.tangent(model.reference).toarray())
+        model = Model(
+            mesh, thickness=0.3, E=1.0, nu=0.3, density=1.0, element=element, membrane=membrane, curvature=curvature
+        )
+        K = model.tangent(model.reference).toarray()
+        # In units of the diagonal, so that positions and gradients of any order can be compared.
+        units = np.sqrt(np.diag(K))
+        eigenvalues = np.linalg.eigvalsh(K / np.outer(units, units))
         assert np.sum(np.abs(eigenvalues) < 1e-10 * eigenvalues[-1]) == 6
         assert eigenvalues[0] > -1e-14 * eigenvalues[-1]
 
 
 def test_extrapolated_stress_is_of_second_order() -> None:
     model = plate()
-    q = moved(model.reference, 3, 0.1)
+    q = moved(model, 3, 0.1)
     dq = np.random.default_rng(4).normal(size=q.shape)
     errors = []
     for size in (1e-3, 1e-4):
@@ -101,16 +133,18 @@ def test_extrapolated_stress_is_of_second_order() -> None:
     assert errors[0] / errors[1] == pytest.approx(100, rel=0.05)
 
 
-def test_mass() -> None:
-    """Mass, first and second moments of a rectangle a x b about its corner: m, m a/2, m (a2 + b2)/3."""
-    model = plate()
+@pytest.mark.parametrize("element", ["thin36", "thin48", "full48a", "full48b"])
+def test_mass(element: ElementKind) -> None:
+    """Mass, first and second moments of a rectangle a x b about its corner: m, m a/2, m (a2 + b2)/3; m h2/12 across."""
+    model = plate(element)
     m = 3.0 * 0.3 * 1.0 * 1.4
-    v = np.zeros((6, 3, 3))
+    v = np.zeros((6, len(model.vectors), 3))
     v[:, 0, 2] = 1
     np.testing.assert_allclose(model.momentum(v.ravel()), [0, 0, m], atol=1e-14)
     np.testing.assert_allclose(model.angular_momentum(model.reference, v.ravel()), [m * 0.7, -m * 0.5, 0], atol=1e-14)
     moment = model.reference @ (model.mass @ model.reference)
-    assert moment == pytest.approx(m * (1.0**2 + 1.4**2) / 3, rel=1e-14)
+    across = m * 0.3**2 / 12 if "r_z" in model.vectors else 0
+    assert moment == pytest.approx(m * (1.0**2 + 1.4**2) / 3 + across, rel=1e-14)
 
 
 def test_projection() -> None:
@@ -124,12 +158,18 @@ def test_projection() -> None:
     np.testing.assert_allclose(Pi @ lost.ravel(), np.full(48, 1 / 3), atol=1e-14)
 
 
-@options
-def test_any_parameters_of_the_same_plate(membrane: MembraneRule, curvature: CurvatureKind) -> None:
+@thin
+def test_any_parameters_of_the_same_plate(
+    element: ElementKind, membrane: MembraneRule, curvature: CurvatureKind
+) -> None:
     """Parameters that are not lengths: the gradients change, the energy and the mass do not."""
-    model = plate(membrane, curvature)
-    q = moved(model.reference, 5, 0.1)
-    scale = np.array([1.0, 2.5, 0.4])[:, None]
+
+    def stretched(x: FloatArray, y: FloatArray) -> SurfacePoints:
+        flat = plane(2.5 * x, 0.4 * y)
+        return SurfacePoints(flat.r, 2.5 * flat.r_x, 0.4 * flat.r_y, flat.r_xy)
+
+    model = plate(element, membrane, curvature)
+    q = moved(model, 5, 0.1)
     mesh = RectangleMesh((1.0 / 2.5, 1.4 / 0.4), (1, 2))
     rescaled = Model(
         mesh,
@@ -137,11 +177,13 @@ def test_any_parameters_of_the_same_plate(membrane: MembraneRule, curvature: Cur
         E=2.0,
         nu=0.3,
         density=3.0,
+        element=element,
         membrane=membrane,
         curvature=curvature,
-        reference=(model.reference.reshape(-1, 3, 3) * scale).ravel(),
+        surface=stretched,
     )
-    p = (q.reshape(-1, 3, 3) * scale).ravel()
+    scale = np.array([1.0, 2.5, 0.4, 2.5 * 0.4])[: len(model.vectors), None]
+    p = (q.reshape(-1, len(scale), 3) * scale).ravel()
     np.testing.assert_allclose(rescaled.energy(p), model.energy(q), rtol=1e-12)
     assert p @ (rescaled.mass @ p) == pytest.approx(q @ (model.mass @ q), rel=1e-12)
 
@@ -151,7 +193,7 @@ def test_stretched_parallelogram() -> None:
     edges = np.array([[1.0, 0.2, 0.0], [0.5, 0.8, 0.0]])
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) @ edges
     e_0 = np.stack([corners, *(np.tile(edge, (4, 1)) for edge in edges)], axis=1).reshape(1, 12, 3)
-    element = Thin36(1.0, 1.0, e_0, 0.1, Material(2.0, 0.3, 1.0), "full")
+    element = Thin(QUARTIC, 1.0, 1.0, e_0, 0.1, Material(2.0, 0.3, 1.0), "full")
     stretch, area = 1.1, 1.0 * 0.8 - 0.2 * 0.5
     strain = (stretch**2 - 1) / 2
     energy = element.membrane_energy().energy(e_0 * [stretch, 1, 1])
@@ -163,25 +205,33 @@ def test_unrolled_cylinder() -> None:
     """A quarter cylinder of radius R, flattened, has the energy E h**3 A / (24 (1 - nu**2) R**2)."""
     R, height, h, n = 2.0, 1.0, 0.01, 8
     mesh = RectangleMesh((np.pi / 2, height), (n, 1))
-    angle, z = mesh.nodes.T
-    zero, one = np.zeros_like(z), np.ones_like(z)
-    curved = np.stack(
-        [
-            np.stack([R * np.cos(angle), R * np.sin(angle), z], axis=1),
-            np.stack([-R * np.sin(angle), R * np.cos(angle), zero], axis=1),
-            np.stack([zero, zero, one], axis=1),
-        ],
-        axis=1,
-    )
-    flat = np.stack(
-        [
-            np.stack([R * angle, z, zero], axis=1),
-            np.stack([R * one, zero, zero], axis=1),
-            np.stack([zero, one, zero], axis=1),
-        ],
-        axis=1,
-    )
-    model = Model(mesh, thickness=h, E=2.0, nu=0.3, density=1.0, curvature="koiter", reference=curved.ravel())
+
+    def unrolled(x: FloatArray, y: FloatArray) -> SurfacePoints:
+        flat = plane(R * x, y)
+        return flat._replace(r_x=R * flat.r_x)
+
+    model = Model(mesh, thickness=h, E=2.0, nu=0.3, density=1.0, curvature="koiter", surface=cylinder(R))
+    flat = unrolled(*mesh.nodes.T).vectors(model.vectors)
     _, bending = model.energy(flat.ravel())
     area = R * np.pi / 2 * height
     assert bending == pytest.approx(2.0 * h**3 * area / (24 * (1 - 0.3**2) * R**2), rel=2e-3)
+
+
+@pytest.mark.parametrize("element", ["full48a", "full48b"])
+def test_volume_of_a_curved_solid(element: ElementKind) -> None:
+    """A patch of a spherical shell weighs rho A ((R + h/2)**3 - (R - h/2)**3) / (3 R**2).
+
+    Directors between nodes are chords of the unit sphere: the error is of second order.
+    """
+    R, h, rho = 2.0, 0.4, 3.0
+    area = 0.5 * R**2 * (np.sin(0.3) + np.sin(0.2))
+    weight = rho * area * ((R + h / 2) ** 3 - (R - h / 2) ** 3) / (3 * R**2)
+    errors = []
+    for n in (4, 8):
+        mesh = RectangleMesh((0.5, 0.5), (n, n), (0.3, -0.2))
+        model = Model(mesh, thickness=h, E=1.0, nu=0.3, density=rho, element=element, surface=sphere(R))
+        v = np.zeros((len(mesh.nodes), 4, 3))
+        v[:, 0, 2] = 1
+        errors.append(model.momentum(v.ravel())[2] / weight - 1)
+    assert abs(errors[0]) < 3e-3
+    assert errors[0] / errors[1] == pytest.approx(4, abs=0.05)

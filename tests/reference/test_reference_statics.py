@@ -4,15 +4,26 @@ import numpy as np
 import pytest
 
 from ancf.reference import Model, NewtonError, NewtonOptions, RectangleMesh, negative_eigenvalues, solve_static
-from ancf.reference.thin36 import CurvatureKind, MembraneRule
+from ancf.reference.elements import ElementKind
+from ancf.reference.thin import CurvatureKind, MembraneRule
 
 TEN_STEPS = list(np.linspace(0.1, 1, 10))
 
 
-def cantilever(n: int, membrane: MembraneRule, curvature: CurvatureKind = "paper") -> Model:
+def cantilever(
+    n: int, membrane: MembraneRule = "projected", curvature: CurvatureKind = "paper", element: ElementKind = "thin36"
+) -> Model:
     """Steel, 0.5 x 0.15 x 0.001 m, clamped; a dead line load of 30 N in all; Dufva and Shabana (2005)."""
-    mesh = RectangleMesh((0.5, 0.15), (n, 1))
-    model = Model(mesh, thickness=1e-3, E=2.07e11, nu=0.3, density=7810, membrane=membrane, curvature=curvature)
+    model = Model(
+        RectangleMesh((0.5, 0.15), (n, 1)),
+        thickness=1e-3,
+        E=2.07e11,
+        nu=0.3,
+        density=7810,
+        element=element,
+        membrane=membrane,
+        curvature=curvature,
+    )
     model.clamp("edge:x0")
     model.add_line_load("x1", [0, 0, -30 / 0.15], "ramp")
     return model
@@ -39,6 +50,12 @@ def tip(model: Model, steps: list[float], newton: NewtonOptions | None = None) -
 def test_cantilever(membrane: MembraneRule, curvature: CurvatureKind, n: int, deflection: float) -> None:
     """Figures of an independent prototype, to the digits it prints."""
     assert tip(cantilever(n, membrane, curvature), [1.0])[0] == pytest.approx(deflection, abs=5.1e-5)
+
+
+@pytest.mark.parametrize(("n", "deflection"), [(1, -0.01043), (2, -0.02766), (4, -0.07223)])
+def test_solid_cantilever(n: int, deflection: float) -> None:
+    """`full48a`, far too stiff; figures of the prototype again."""
+    assert tip(cantilever(n, element="full48a"), TEN_STEPS)[0] == pytest.approx(deflection, abs=5.1e-6)
 
 
 @pytest.mark.parametrize(("n", "deflection"), [(1, -0.1833), (2, -0.2615)])

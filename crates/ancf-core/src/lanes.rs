@@ -6,6 +6,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use pulp::bytemuck::{cast_slice, cast_slice_mut};
 use pulp::{Arch, Simd};
 
 /// The widest register there is, in numbers.
@@ -30,6 +31,11 @@ pub struct Lanes<S: Simd> {
     value: S::f64s,
 }
 
+/// Numbers in lanes at the start of a cache line: a register that lies across two lines takes twice the time to load.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct Aligned<T>(pub T);
+
 /// A vector in space, for each lane.
 pub type Vector<S> = [Lanes<S>; 3];
 
@@ -46,21 +52,17 @@ impl<S: Simd> Lanes<S> {
         Self::splat(self.simd, value)
     }
 
-    /// The number that `entry` gives for each lane.
+    /// The first numbers of an array, one for each lane.
     #[inline(always)]
-    pub fn from_fn(simd: S, entry: impl Fn(usize) -> f64) -> Self {
-        let mut buffer = [0.0; MAX_LANES];
-        for (lane, number) in buffer[..S::F64_LANES].iter_mut().enumerate() {
-            *number = entry(lane);
-        }
-        Self { simd, value: simd.partial_load_f64s(&buffer[..S::F64_LANES]) }
+    pub fn from_array(simd: S, numbers: &[f64; MAX_LANES]) -> Self {
+        Self { simd, value: cast_slice(&numbers[..S::F64_LANES])[0] }
     }
 
     /// The number in each lane; the rest of the array is zero.
     #[inline(always)]
     pub fn to_array(self) -> [f64; MAX_LANES] {
         let mut buffer = [0.0; MAX_LANES];
-        self.simd.partial_store_f64s(&mut buffer[..S::F64_LANES], self.value);
+        cast_slice_mut(&mut buffer[..S::F64_LANES])[0] = self.value;
         buffer
     }
 
@@ -86,6 +88,63 @@ impl<S: Simd> Lanes<S> {
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self { simd: self.simd, value: self.simd.sqrt_f64s(self.value) }
+    }
+}
+
+/// Numbers of several elements from lanes to one element after the other.
+#[derive(Clone, Copy, Debug)]
+pub struct Transpose<S: Simd> {
+    simd: S,
+    /// The lane whose numbers are in each place.
+    lanes: [usize; MAX_LANES],
+}
+
+/// Registers that are transposed at a time.
+const FOUR: usize = 4;
+
+impl<S: Simd> Transpose<S> {
+    /// The transposition for an instruction set.
+    #[inline(always)]
+    pub fn new(simd: S) -> Self {
+        let mut numbers = [0.0; MAX_LANES];
+        for (lane, number) in numbers.iter_mut().enumerate() {
+            *number = lane as f64;
+        }
+        let places = Self::interleave(simd, &[Lanes::from_array(simd, &numbers); FOUR]);
+        let mut lanes = [0; MAX_LANES];
+        for (lane, place) in lanes.iter_mut().zip(cast_slice::<_, f64>(&places).chunks_exact(FOUR)) {
+            *lane = place[0] as usize;
+        }
+        Self { simd, lanes }
+    }
+
+    /// Four numbers of one lane after four of another.
+    #[inline(always)]
+    fn interleave(simd: S, numbers: &[Lanes<S>]) -> [S::f64s; FOUR] {
+        simd.interleave_shfl_f64s([numbers[0].value, numbers[1].value, numbers[2].value, numbers[3].value])
+    }
+
+    /// Stores numbers of several elements, which have `size` numbers each in `target`, from `first` on.
+    #[inline(always)]
+    pub fn store(self, numbers: &[Lanes<S>], first: usize, size: usize, target: &mut [f64]) {
+        let elements = target.len() / size;
+        let fours = numbers.chunks_exact(FOUR);
+        let rest = fours.remainder();
+        for (i, four) in fours.enumerate() {
+            let values = Self::interleave(self.simd, four);
+            for (place, values) in cast_slice::<_, f64>(&values).chunks_exact(FOUR).enumerate() {
+                let element = self.lanes[place];
+                if element < elements {
+                    target[element * size + first + FOUR * i..][..FOUR].copy_from_slice(values);
+                }
+            }
+        }
+        for (i, number) in rest.iter().enumerate() {
+            let values = number.to_array();
+            for (lane, element) in target.chunks_exact_mut(size).enumerate() {
+                element[first + numbers.len() - rest.len() + i] = values[lane];
+            }
+        }
     }
 }
 

@@ -11,8 +11,9 @@
 //! weights, several elements side by side in SIMD registers (`lanes`).
 //!
 //! [`linear`] factorises the tangent. [`nonlinear`] solves `c M (q - q*) + k (Q_k - Q_e) + p = 0` by Newton's method;
-//! [`statics`] puts it into steps along a load path, [`dynamics`] into time steps. Both tell an [`observe::Observer`] what
-//! they reach and end with a [`report::Run`]. [`evaluate`] gives positions and strains at material points.
+//! [`statics`] puts it into steps along a load path, [`dynamics`] into time steps, [`modes`] finds the frequencies of small
+//! oscillations. All tell an [`observe::Observer`] what they reach and end with a [`report::Run`]. [`evaluate`] gives
+//! positions, strains and stresses at material points.
 //!
 //! # Example
 //!
@@ -59,6 +60,7 @@ pub mod linear;
 mod material;
 pub mod mesh;
 pub mod model;
+pub mod modes;
 pub mod nonlinear;
 pub mod observe;
 mod quadrature;

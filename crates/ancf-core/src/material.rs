@@ -99,6 +99,11 @@ impl Material {
         isotropic(lambda, self.shear(), metric, SOLID_PAIRS)
     }
 
+    /// Strain across a plate in plane stress, from the sum of the two strains in its plane.
+    pub(crate) fn strain_across(&self, sum: f64) -> f64 {
+        -self.poisson / (1.0 - self.poisson) * sum
+    }
+
     /// The shear modulus, Pa.
     fn shear(&self) -> f64 {
         0.5 * self.young / (1.0 + self.poisson)

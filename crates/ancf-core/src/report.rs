@@ -41,6 +41,8 @@ pub struct Counts {
     pub unsolved: usize,
     /// Newton iterations.
     pub iterations: usize,
+    /// Evaluations of the elastic forces of all elements, with or without their tangent.
+    pub forces: usize,
     /// Numeric factorisations.
     pub factorizations: usize,
 }
@@ -49,7 +51,8 @@ impl Counts {
     /// The same with what the system knows.
     pub(crate) fn of(self, system: &System) -> Self {
         let (elements, dofs) = (system.elements(), system.free().len());
-        Self { elements, dofs, factorizations: self.factorizations + system.factorizations(), ..self }
+        let forces = self.forces + system.forces();
+        Self { elements, dofs, forces, factorizations: self.factorizations + system.factorizations(), ..self }
     }
 }
 

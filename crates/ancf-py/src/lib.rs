@@ -23,7 +23,7 @@ mod _core {
     #[pymodule_export]
     use super::shape::Shape;
     #[pymodule_export]
-    use super::solve::{simulate, solve_static};
+    use super::solve::{modes, simulate, solve_static};
 
     #[allow(non_upper_case_globals, reason = "the name that Python expects")]
     #[pymodule_export]

@@ -10,8 +10,9 @@ use ancf_core::model::{Course, Fix, History, Load, LoadKind, Plate, SupportMotio
 use ancf_core::strain::CurvatureLaw;
 use ancf_core::{Damping, InputError, Material, model};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::exceptions::PyMemoryError;
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
+use rayon::prelude::*;
 
 use crate::arrays::{coordinates, matrix, stack, states, vector};
 use crate::errors::{checked, input_error};
@@ -347,6 +348,18 @@ impl Model {
         Ok((vector(py, rows), vector(py, columns), vector(py, values)))
     }
 
+    fn factorize(&self) -> PyResult<usize> {
+        let inertia = self.with_system(System::factorize)?;
+        inertia.map(|inertia| inertia.negative).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    }
+
+    fn solve<'py>(&self, py: Python<'py>, right: PyReadonlyArray1<'_, f64>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let right = coordinates(py, "right", &right, self.coordinates())?;
+        let mut solution = vec![0.0; right.len()];
+        self.with_system(|system| system.solve(&right, &mut solution))?;
+        Ok(vector(py, solution))
+    }
+
     fn mass<'py>(&self, py: Python<'py>) -> PyResult<Triplets<'py>> {
         let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
         self.with_system(|system| {
@@ -365,6 +378,23 @@ impl Model {
             }
         })?;
         Ok((vector(py, rows), vector(py, columns), vector(py, values)))
+    }
+
+    fn samples<'py>(&self, py: Python<'py>, body: &str, of: &str) -> PyResult<Bound<'py, PyArray3<f64>>> {
+        let body = self.model.body(checked(py, self.model.find(body))?);
+        let [membrane, bending] = body.samples();
+        let points = match of {
+            "membrane" => membrane,
+            "bending" => bending,
+            _ => return checked(py, Err(InputError::new("of", format!("\"{of}\""), "membrane, bending"))),
+        };
+        let (grid, [l, w]) = (body.grid(), body.grid().element_sides());
+        let place = |element: usize| {
+            let [x, y] = grid.parameters(grid.cell(element)[0]);
+            points.iter().flat_map(move |[xi, eta]| [x + l * xi, y + w * eta])
+        };
+        let values = (0..grid.elements()).flat_map(place).collect();
+        Ok(stack(py, (grid.elements(), points.len(), 2), values))
     }
 
     fn locate(&self, py: Python<'_>, body: &str, points: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
@@ -399,11 +429,13 @@ impl Model {
             .map(|point| checked(py, MaterialPoint::new(&self.model, body, [point[0], point[1]], quantity)))
             .collect::<PyResult<_>>()?;
         let components = quantity.components();
-        let mut values = Vec::with_capacity(components * q.len() * points.len());
-        for (i, q) in q.iter().enumerate() {
+        let at = |i: usize| {
             let v = v.as_ref().map_or(&rest, |v| &v[i]);
-            values.extend(points.iter().flat_map(|point| point.evaluate(q, v).into_iter().take(components)));
-        }
+            let of_point = |point: &MaterialPoint| point.evaluate(&q[i], v).into_iter().take(components);
+            points.iter().flat_map(of_point).collect::<Vec<f64>>()
+        };
+        let values: Vec<Vec<f64>> = py.detach(|| (0..q.len()).into_par_iter().map(at).collect());
+        let values = values.concat();
         Ok(stack(py, (q.len(), points.len(), components), values))
     }
 }

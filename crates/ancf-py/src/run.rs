@@ -142,6 +142,7 @@ impl Run {
         dictionary.set_item("rejected", counts.rejected)?;
         dictionary.set_item("unsolved", counts.unsolved)?;
         dictionary.set_item("iterations", counts.iterations)?;
+        dictionary.set_item("forces", counts.forces)?;
         dictionary.set_item("factorizations", counts.factorizations)?;
         Ok(dictionary)
     }

@@ -1,9 +1,9 @@
 //! Running a solve: it works in a thread of its own, while Python's thread shows progress and listens for Ctrl-C.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -13,12 +13,12 @@ use ancf_core::linear::LinearError;
 use ancf_core::nonlinear::{Options as NewtonOptions, Variant};
 use ancf_core::observe::{Observer, State};
 use ancf_core::statics::Control;
-use ancf_core::{InputError, model, report, statics};
-use numpy::PyReadonlyArray1;
+use ancf_core::{InputError, model, modes as oscillations, report, statics};
+use numpy::{PyArray1, PyArray2, PyReadonlyArray1};
 use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
 
-use crate::arrays::coordinates;
+use crate::arrays::{coordinates, matrix, vector};
 use crate::errors::{checked, input_error};
 use crate::model::Model;
 use crate::run::Run;
@@ -325,4 +325,39 @@ pub fn simulate(
     run(py, model, threads, progress, states, checkpoint, move |system, observer| {
         dynamics::simulate(system, &options, from, observer)
     })
+}
+
+/// The run, the squared circular frequencies and the shapes.
+type Modes<'py> = (Run, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
+
+/// Finds the modes with the smallest eigenvalues about a state.
+#[pyfunction]
+#[pyo3(signature = (model, *, count, q, load_factor, threads, progress))]
+pub fn modes<'py>(
+    py: Python<'py>,
+    model: &Model,
+    count: usize,
+    q: PyReadonlyArray1<'py, f64>,
+    load_factor: f64,
+    threads: Option<usize>,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Modes<'py>> {
+    let n = model.core().reference().len();
+    let q = coordinates(py, "q", &q, n)?;
+    let options = oscillations::Options { count, q, t: load_factor };
+    let found = Arc::new(Mutex::new(Vec::new()));
+    let place = Arc::clone(&found);
+    let run = run(py, model, threads, progress, Vec::new(), None, move |system, observer| {
+        let (modes, run) = oscillations::solve(system, &options, observer)?;
+        *place.lock().unwrap_or_else(PoisonError::into_inner) = modes;
+        Ok(run)
+    })?;
+    let modes = found.lock().unwrap_or_else(PoisonError::into_inner);
+    let eigenvalues = vector(py, modes.iter().map(|mode| mode.eigenvalue).collect());
+    let shapes = if modes.is_empty() {
+        PyArray2::zeros(py, [0, n], false)
+    } else {
+        matrix(py, n, modes.iter().flat_map(|mode| mode.shape.iter().copied()).collect())
+    };
+    Ok((run, eigenvalues, shapes))
 }

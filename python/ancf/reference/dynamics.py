@@ -1,8 +1,8 @@
-"""Motion: generalised-alpha with averaged forces, HHT-alpha and Newmark as special cases, fixed steps."""
+"""Motion in fixed steps: M q'' + F(q, t) = 0 with F = Q_k - Q_e; the methods are in `integrators`."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from typing import NamedTuple, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -10,32 +10,7 @@ from scipy.sparse.linalg import splu
 
 from .arrays import FloatArray, IndexArray, einsum
 from .model import Model
-from .newton import NewtonOptions, solve
-
-
-@dataclass(frozen=True)
-class GeneralizedAlpha:
-    """Parameters of M[(1 - am) a1 + am a0] + (1 - af) F1 + af F0 = 0, F = Q_k - Q_e, 0 and 1 the ends of a step.
-
-    Positions and velocities follow Newmark's formulas with beta and gamma.
-    """
-
-    alpha_m: float
-    alpha_f: float
-    beta: float
-    gamma: float
-
-    @classmethod
-    def hht(cls, alpha: float) -> Self:
-        """HHT-alpha with alpha in [-1/3, 0]; Hilber, Hughes and Taylor (1977). 0 is the trapezoidal rule."""
-        return cls(0.0, -alpha, (1 - alpha) ** 2 / 4, 0.5 - alpha)
-
-    @classmethod
-    def generalized_alpha(cls, rho_inf: float) -> Self:
-        """Generalised-alpha with the spectral radius rho_inf in [0, 1] at infinity; Chung and Hulbert (1993)."""
-        alpha_m = (2 * rho_inf - 1) / (rho_inf + 1)
-        alpha_f = rho_inf / (rho_inf + 1)
-        return cls(alpha_m, alpha_f, (1 - alpha_m + alpha_f) ** 2 / 4, 0.5 - alpha_m + alpha_f)
+from .newton import NewtonOptions, Residual, Tangent, solve
 
 
 class State(NamedTuple):
@@ -46,6 +21,50 @@ class State(NamedTuple):
     v: FloatArray
     a: FloatArray
     F: FloatArray
+
+
+class Equations:
+    """The equations of motion of a model.
+
+    Parameters
+    ----------
+    model : Model
+    options : NewtonOptions
+    """
+
+    def __init__(self, model: Model, options: NewtonOptions) -> None:
+        self.model = model
+        self.options = options
+        self._mass = splu(model.mass[model.free][:, model.free])
+
+    def force(self, q: FloatArray, t: float) -> FloatArray:
+        """F = Q_k - Q_e, shape (n,)."""
+        return self.model.internal_force(q) - self.model.external_force(q, t)
+
+    def at(self, t: float, q: FloatArray, v: FloatArray) -> State:
+        """Return a state with the accelerations of the equations of motion."""
+        F, free = self.force(q, t), self.model.free
+        # Fixed coordinates leave the system before it is solved: their reactions must not reach the accelerations.
+        a = np.zeros_like(q)
+        a[free] = self._mass.solve(-F[free])
+        return State(t, q, v, a, F)
+
+    def solve(self, residual: Residual, tangent: Tangent, q: FloatArray) -> tuple[FloatArray, int]:
+        """Solve for the coordinates at the end of a stage, beginning with q; return also the iterations."""
+        return solve(self.model, q, residual, tangent, self.options)
+
+    def stiffness(self, q: FloatArray, t: float, stress: Sequence[FloatArray]) -> sp.csc_array:
+        """dF/dq with the given stress in its geometric part, shape (n, n)."""
+        K: sp.csc_array = self.model.tangent(q, stress) - self.model.load_stiffness(q, t)
+        return K
+
+
+class Method(Protocol):
+    """A way to make a step."""
+
+    def advance(self, equations: Equations, start: State, t: float) -> tuple[State, int]:
+        """Make one step to the time t; return its end and the number of Newton iterations."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -75,7 +94,7 @@ def simulate(
     model: Model,
     until: float,
     step: float,
-    method: GeneralizedAlpha,
+    method: Method,
     *,
     velocity: FloatArray | None = None,
     options: NewtonOptions | None = None,
@@ -89,7 +108,8 @@ def simulate(
     model : Model
     until, step : float
         End of the motion and step, s; `until` is rounded to a whole number of steps.
-    method : GeneralizedAlpha
+    method : Method
+        One of `integrators`.
     velocity : ndarray, shape (n,), optional
         Velocity at t = 0; rest if not given. Must vanish on fixed coordinates.
     options : NewtonOptions, optional
@@ -100,51 +120,12 @@ def simulate(
         If a step has no solution.
     """
     t: FloatArray = step * np.arange(round(until / step) + 1, dtype=np.float64)
+    equations = Equations(model, options or NewtonOptions())
     v = np.zeros(model.coordinates) if velocity is None else velocity
-    state = _initial(model, v)
-    states, iterations = [state], []
+    states, iterations = [equations.at(0.0, model.reference, v)], []
     for end in t[1:]:
-        state, count = _advance(model, method, state, end, options or NewtonOptions())
+        state, count = method.advance(equations, states[-1], end)
         states.append(state)
         iterations.append(count)
     q, v, a = (np.array([state[k] for state in states]) for k in (1, 2, 3))
     return Motion(t, q, v, a, np.array(iterations, dtype=np.intp))
-
-
-def _initial(model: Model, v: FloatArray) -> State:
-    """Compute the consistent acceleration of the reference configuration, M a = -F."""
-    q, free = model.reference, model.free
-    F = model.internal_force(q) - model.external_force(q, 0.0)
-    # Fixed coordinates leave the system before it is solved: their reactions must not reach the accelerations.
-    a = np.zeros_like(q)
-    a[free] = splu(model.mass[free][:, free]).solve(-F[free])
-    return State(0.0, q, v, a, F)
-
-
-def _advance(
-    model: Model, method: GeneralizedAlpha, start: State, t: float, options: NewtonOptions
-) -> tuple[State, int]:
-    """Make one step to the time t; return its end and the number of Newton iterations."""
-    am, af, beta, gamma = method.alpha_m, method.alpha_f, method.beta, method.gamma
-    h = t - start.t
-    M = model.mass
-
-    def acceleration(q: FloatArray) -> FloatArray:
-        return (q - start.q - h * start.v) / (beta * h**2) - (1 / (2 * beta) - 1) * start.a
-
-    def force(q: FloatArray) -> FloatArray:
-        return model.internal_force(q) - model.external_force(q, t)
-
-    def residual(q: FloatArray) -> FloatArray:
-        inertia: FloatArray = M @ ((1 - am) * acceleration(q) + am * start.a)
-        return inertia + (1 - af) * force(q) + af * start.F
-
-    def tangent(q: FloatArray, stress: Sequence[FloatArray]) -> sp.csc_array:
-        K = model.tangent(q, stress) - model.load_stiffness(q, t)
-        total: sp.csc_array = (1 - am) / (beta * h**2) * M + (1 - af) * K
-        return total
-
-    q, iterations = solve(model, start.q, residual, tangent, options)
-    a = acceleration(q)
-    v = start.v + h * ((1 - gamma) * start.a + gamma * a)
-    return State(t, q, v, a, force(q)), iterations

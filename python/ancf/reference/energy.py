@@ -54,9 +54,12 @@ class StrainEnergy:
         """Energy of each element, J, shape (e,)."""
         return einsum("em,em->e", self.strain(e), self.stress(e)) / 2
 
-    def force(self, e: FloatArray) -> FloatArray:
-        """Elastic force Q_k = B^T S, shape (e, a, 3); Dufva and Shabana (2005), (25), (35)."""
-        return einsum("emai,em->eai", self.gradient(e), self.stress(e))
+    def force(self, e: FloatArray, stress: FloatArray | None = None) -> FloatArray:
+        """Elastic force Q_k = B^T S, shape (e, a, 3); Dufva and Shabana (2005), (25), (35).
+
+        S is `stress`, of shape (e, m), when it is given in place of the true one.
+        """
+        return einsum("emai,em->eai", self.gradient(e), self.stress(e) if stress is None else stress)
 
     def tangent(self, e: FloatArray, stress: FloatArray | None = None) -> FloatArray:
         """Tangent B^T W B + sum_m S_m d2 eps_m / de2, shape (e, a, 3, b, 3).

@@ -1,7 +1,8 @@
-"""Loads, each through its virtual work: int f . (dr, dr_x, dr_y) over points, an edge or the surface.
+"""Loads, each through its virtual work: int f . (dr, da, db) over points, an edge, the surface or the volume.
 
-The density f, of shape (p, 3, 3), holds at every point the vectors that do work on dr, dr_x and dr_y. It depends on
-the current r_x, r_y, of shape (p, 2, 3), when the load follows the body.
+The density f, of shape (p, v, 3), holds at every point the vectors that do work on dr and on further vectors a, b of
+the element. It depends on them, of shape (p, v - 1, 3), when the load follows the body: on r_x, r_y for a pressure, on
+the vector that is turned and the tangent of the edge for a moment.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,12 +28,12 @@ class Load:
     ----------
     cells : ndarray, shape (p,)
         Element of each point.
-    table : ndarray, shape (p, 3, a)
-        N, N_x, N_y of the element's shape functions.
+    table : ndarray, shape (p, v, a)
+        Tables of r and of the further vectors.
     weights : ndarray, shape (p,)
         Quadrature weights.
     density : callable
-        f(r_x, r_y) at the points.
+        f at the points, as a function of the further vectors.
     follows : bool
         Whether the density changes with the configuration.
     history : "constant", "ramp" or a table of (t, factor)
@@ -64,8 +65,9 @@ class Load:
         The density is differentiated by complex steps, which is exact to rounding; Squire and Trapp (1998).
         """
         vectors = self._vectors(e)
-        derivative = np.empty((len(vectors), 3, 3, 2, 3))
-        for u, j in np.ndindex(2, 3):
+        points, further, _ = vectors.shape
+        derivative = np.empty((points, 1 + further, 3, further, 3))
+        for u, j in np.ndindex(further, 3):
             shifted = vectors.astype(np.complex128)
             shifted[:, u, j] += 1j * COMPLEX_STEP
             derivative[..., u, j] = self.density(shifted).imag / COMPLEX_STEP
@@ -73,15 +75,20 @@ class Load:
         return (full + full.transpose(0, 3, 4, 1, 2)) / 2
 
     def _vectors(self, e: FloatArray) -> FloatArray:
-        """Evaluate the current r_x, r_y at the points, shape (p, 2, 3)."""
+        """Evaluate the further vectors at the points, shape (p, v - 1, 3)."""
         return einsum("pva,pai->pvi", self.table[:, 1:], e[self.cells])
 
 
 def dead(force: ArrayLike) -> Density:
-    """Constant force on dr: per point (N), length (N/m) or area (N/m2)."""
-    f = np.zeros((3, 3))
-    f[0] = force
-    return lambda vectors: np.broadcast_to(f, (len(vectors), 3, 3))
+    """Constant force on dr: per point (N), length (N/m) or mass (N/kg)."""
+
+    def density(vectors: NDArray[Any]) -> NDArray[Any]:
+        points, further, _ = vectors.shape
+        f = np.zeros((points, 1 + further, 3))
+        f[:, 0] = force
+        return f
+
+    return density
 
 
 def pressure(p: float) -> Density:
@@ -96,22 +103,22 @@ def pressure(p: float) -> Density:
 
 
 def edge_moment(M: float, edge: str) -> Density:
-    """Moment M (N m/m) that turns the outward direction of an edge towards the normal n = r_x x r_y.
+    """Moment M (N m/m) about an edge that turns the outward direction towards the normal r_x x r_y.
 
-    Its virtual work is M dtheta, dtheta = n/|n| . dnu with nu = c^x r_x + c^y r_y the unit outward conormal: in the
-    tangent plane, orthogonal to the edge. Changes of c^x and c^y do no work, since n . r_x = n . r_y = 0.
+    It turns a vector d, r_x or r_y across the edge or r_z, about the unit tangent a of the edge, outward x normal. Its
+    virtual work is M dtheta, dtheta = m . dnu with nu = (d - c s)/|d - c s| the unit part of d normal to the tangent s
+    and m = a x nu; changes of c and of the length do no work, since m . d = m . s = 0.
     """
-    across = "xy".index(edge[0])
-    sign = 1 if edge[1] == "1" else -1
+    sign = 1 if edge in ("x0", "y1") else -1
 
     def density(vectors: NDArray[Any]) -> NDArray[Any]:
-        outward, along = vectors[:, across], vectors[:, 1 - across]
-        n = np.cross(vectors[:, 0], vectors[:, 1])
-        overlap = np.sum(outward * along, axis=-1, keepdims=True) / np.sum(along * along, axis=-1, keepdims=True)
-        length = _norm(outward - overlap * along)
+        d, s = vectors[:, 0], vectors[:, 1]
+        c = np.sum(d * s, axis=-1, keepdims=True) / np.sum(s * s, axis=-1, keepdims=True)
+        nu = d - c * s
+        m = sign * np.cross(s, nu) / (_norm(s) * _norm(nu))
         f = np.zeros((len(vectors), 3, 3), dtype=vectors.dtype)
-        f[:, 1 + across] = sign * M * n / (_norm(n) * length)
-        f[:, 2 - across] = -overlap * f[:, 1 + across]
+        f[:, 1] = M * m / _norm(nu)
+        f[:, 2] = -c * f[:, 1]
         return f
 
     return density

@@ -22,10 +22,11 @@ class Points(NamedTuple):
 
 @dataclass(frozen=True)
 class RectangleMesh:
-    """Elements nx by ny over [0, size[0]] x [0, size[1]]; node (i, j) has the number i + (nx + 1) j."""
+    """Elements nx by ny over a rectangle of the given size and first corner; node (i, j) is number i + (nx + 1) j."""
 
     size: tuple[float, float]
     divisions: tuple[int, int]
+    origin: tuple[float, float] = (0.0, 0.0)
 
     @property
     def sides(self) -> FloatArray:
@@ -36,7 +37,7 @@ class RectangleMesh:
     def nodes(self) -> FloatArray:
         """Natural coordinates of the nodes, shape (nodes, 2)."""
         y, x = np.meshgrid(*(np.linspace(0, self.size[k], self.divisions[k] + 1) for k in (1, 0)), indexing="ij")
-        return np.stack([x.ravel(), y.ravel()], axis=1)
+        return np.stack([x.ravel(), y.ravel()], axis=1) + self.origin
 
     @property
     def cells(self) -> IndexArray:
@@ -58,9 +59,10 @@ class RectangleMesh:
 
     def locate(self, point: tuple[float, float]) -> Points:
         """One material point with the weight 1; ValueError if (x, y) is outside the rectangle."""
-        if not all(0 <= point[k] <= self.size[k] for k in (0, 1)):
-            raise ValueError(f"the point {point} is outside the rectangle {self.size}")
-        scaled = np.array(point) / self.sides
+        place = np.array(point) - self.origin
+        if not np.all((place >= 0) & (place <= self.size)):
+            raise ValueError(f"the point {point} is outside the rectangle of {self.size} from {self.origin}")
+        scaled = place / self.sides
         ij = np.minimum(scaled.astype(np.intp), np.array(self.divisions) - 1)
         return Points(np.array([ij[0] + self.divisions[0] * ij[1]]), (scaled - ij)[None, :], np.ones(1))
 
@@ -86,7 +88,7 @@ class RectangleMesh:
         if side not in ("x0", "x1", "y0", "y1"):
             raise ValueError(f"no side of a rectangle: {side!r}")
         across = "xy".index(side[0])
-        x = self.nodes[:, across]
+        x = self.nodes[:, across] - self.origin[across]
         return np.isclose(x, int(side[1]) * self.size[across], rtol=0, atol=1e-9 * self.size[across])
 
 

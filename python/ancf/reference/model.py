@@ -1,4 +1,4 @@
-"""A plate or shell of `thin36` elements with supports and loads: the global system."""
+"""A plate or shell with supports and loads: the global system."""
 
 from collections.abc import Sequence
 
@@ -7,20 +7,21 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 
 from .arrays import FloatArray, IndexArray, einsum
+from .elements import NODAL_VECTORS, ElementKind, make
 from .loads import Density, History, Load, dead, edge_moment, pressure
+from .material import Material
 from .mesh import At, Points, RectangleMesh
 from .quadrature import gauss, square
-from .shape import THIN36
-from .thin36 import CurvatureKind, Material, MembraneRule, Thin36
+from .surface import Surface, plane
+from .thin import CurvatureKind, MembraneRule
 
-VECTORS = ("r", "r_x", "r_y")
 DIRECTIONS = ("x", "y", "z")
 
 
 class Model:
     """One body with its supports and loads.
 
-    Nodal coordinates are numbered node after node, vector after vector (r, r_x, r_y), three components each; n is
+    Nodal coordinates are numbered node after node, vector after vector (r, r_x, r_y, ...), three components each; n is
     their number.
 
     Parameters
@@ -31,10 +32,12 @@ class Model:
         In m.
     E, nu, density : float
         Young's modulus in Pa, Poisson's ratio, density in kg/m3.
+    element : {"thin36", "thin48", "full48a", "full48b"}
     membrane : {"projected", "full", "lobatto"}
     curvature : {"paper", "koiter"}
-    reference : ndarray, shape (n,), optional
-        Nodal coordinates of the reference configuration; a flat rectangle in the X-Y plane if not given.
+        Of thin elements.
+    surface : callable
+        The reference shape; the flat rectangle in the X-Y plane if not given.
     """
 
     def __init__(
@@ -45,18 +48,22 @@ class Model:
         E: float,
         nu: float,
         density: float,
+        element: ElementKind = "thin36",
         membrane: MembraneRule = "projected",
         curvature: CurvatureKind = "paper",
-        reference: FloatArray | None = None,
+        surface: Surface = plane,
     ) -> None:
         self.mesh = mesh
-        self.reference = _flat(mesh) if reference is None else reference
-        nodal = 9 * mesh.cells[:, :, None] + np.arange(9)
-        self._index: IndexArray = nodal.reshape(len(mesh.cells), 12, 3)
+        self.vectors = NODAL_VECTORS[element]
+        self.reference = surface(*mesh.nodes.T).vectors(self.vectors).ravel()
+        size = 3 * len(self.vectors)
+        nodal = size * mesh.cells[:, :, None] + np.arange(size)
+        self._index: IndexArray = nodal.reshape(len(mesh.cells), -1, 3)
         l, w = mesh.sides
         e_0 = self._local(self.reference)
-        self.element = Thin36(l, w, e_0, thickness, Material(E, nu, density), membrane, curvature)
-        self._energies = (self.element.membrane_energy(), self.element.bending_energy())
+        material = Material(E, nu, density)
+        self.element = make(element, (l, w), e_0, thickness, material, membrane=membrane, curvature=curvature)
+        self._energies = self.element.energies()
         self.mass = self._assemble_matrix(self._index, einsum("eab,ij->eaibj", self.element.mass(), np.eye(3)))
         self._fixed = np.zeros(self.coordinates, dtype=np.bool_)
         self._loads: list[Load] = []
@@ -74,27 +81,29 @@ class Model:
     @property
     def correction_scale(self) -> FloatArray:
         """What a correction is compared with: the largest extent of the body for r, 1 for gradients, shape (n,)."""
-        scale = np.ones((len(self.mesh.nodes), 3, 3))
-        scale[:, 0] = np.ptp(self.reference.reshape(-1, 3, 3)[:, 0], axis=0).max()
+        scale = np.ones_like(self._nodal(self.reference))
+        scale[:, 0] = np.ptp(self._nodal(self.reference)[:, 0], axis=0).max()
         return scale.ravel()
 
     def fix(self, at: At, coordinates: Sequence[str]) -> None:
-        """Fix vectors ("r", "r_x", "r_y") or components ("r.x", "r_y.z", ...) of the nodes at a place."""
-        fixed = self._fixed.reshape(-1, 3, 3)
+        """Fix vectors ("r", "r_x", ...) or components ("r.x", "r_y.z", ...) of the nodes at a place."""
+        fixed = self._fixed.reshape(-1, len(self.vectors), 3)
         for name in coordinates:
             vector, _, direction = name.partition(".")
             component = DIRECTIONS.index(direction) if direction else slice(None)
-            fixed[self.mesh.select(at), VECTORS.index(vector), component] = True
+            fixed[self.mesh.select(at), self.vectors.index(vector), component] = True
 
     def clamp(self, at: At) -> None:
         """Fix all vectors of the nodes at a place."""
-        self.fix(at, VECTORS)
+        self.fix(at, self.vectors)
 
     def add_gravity(self, acceleration: ArrayLike, history: History = "constant") -> None:
-        """Gravity: a force rho h g per reference area; acceleration g in m/s2."""
-        material = self.element.material
-        points = self._weighted_by_area(self.mesh.on_area(square(gauss(5))))
-        self._add(points, dead(material.density * self.element.thickness * np.asarray(acceleration)), False, history)
+        """Gravity: a force rho g per volume; acceleration g in m/s2."""
+        N, mass = self.element.mass_points()
+        elements, samples = mass.shape
+        cells = np.repeat(np.arange(elements), samples)
+        table = np.tile(N[:, None], (elements, 1, 1))
+        self._loads.append(Load(cells, table, mass.ravel(), dead(acceleration), False, history))
 
     def add_force(self, at: tuple[float, float], force: ArrayLike, history: History = "constant") -> None:
         """Add a dead force (N) at the material point (x, y)."""
@@ -106,31 +115,35 @@ class Model:
 
     def add_moment(self, edge: str, per_length: float, history: History = "constant") -> None:
         """Add a moment per reference length (N m/m) that turns the outward direction of an edge towards the normal."""
-        self._add(self._edge(edge), edge_moment(per_length, edge), True, history)
+        points = self._edge(edge)
+        surface = self._surface_table(points)
+        table = np.stack([surface[:, 0], self.element.director(edge, points.unit), surface[:, _along(edge)]], axis=1)
+        density = edge_moment(per_length, edge)
+        self._loads.append(Load(points.cells, table, points.weights, density, True, history))
 
     def add_pressure(self, p: float, history: History = "constant") -> None:
         """Add a pressure (Pa) along the current normal."""
         self._add(self.mesh.on_area(square(gauss(5))), pressure(p), True, history)
 
     def energy(self, q: FloatArray) -> tuple[float, float]:
-        """Membrane and bending energy, J."""
-        membrane, bending = (float(energy.energy(self._local(q)).sum()) for energy in self._energies)
-        return membrane, bending
+        """Membrane and bending energy, J; the energy of a solid counts as membrane energy."""
+        membrane, *bending = (float(energy.energy(self._local(q)).sum()) for energy in self._energies)
+        return membrane, sum(bending)
 
     def stress(self, q: FloatArray) -> list[FloatArray]:
-        """Weighted stress W (eps - eps_0) of the membrane and bending samples, each (elements, samples * 3)."""
+        """Weighted stress W (eps - eps_0) of the samples of each energy, each (elements, m)."""
         return [energy.stress(self._local(q)) for energy in self._energies]
 
     def extrapolated_stress(self, q: FloatArray, dq: FloatArray) -> list[FloatArray]:
         """Stress extrapolated linearly from q to q + dq; Magisano, Leonetti and Garcea (2017)."""
         return [energy.extrapolated_stress(self._local(q), self._local(dq)) for energy in self._energies]
 
-    def internal_force(self, q: FloatArray) -> FloatArray:
-        """Elastic force Q_k, shape (n,)."""
-        return sum(
-            (self._assemble_vector(self._index, energy.force(self._local(q))) for energy in self._energies),
-            np.zeros(self.coordinates),
-        )
+    def internal_force(self, q: FloatArray, stress: Sequence[FloatArray] | None = None) -> FloatArray:
+        """Elastic force Q_k, shape (n,); of the stress S that is given, as `stress` gives it, B^T S."""
+        e = self._local(q)
+        stresses = self.stress(q) if stress is None else stress
+        forces = (energy.force(e, S) for energy, S in zip(self._energies, stresses, strict=True))
+        return sum((self._assemble_vector(self._index, force) for force in forces), np.zeros(self.coordinates))
 
     def tangent(self, q: FloatArray, stress: Sequence[FloatArray] | None = None) -> sp.csc_array:
         """Differentiate the elastic force: dQ_k/dq, shape (n, n).
@@ -161,7 +174,7 @@ class Model:
 
     def momentum(self, v: FloatArray) -> FloatArray:
         """Linear momentum of the velocities v, kg m/s, shape (3,)."""
-        positions = np.zeros((len(self.mesh.nodes), 3, 3))
+        positions = np.zeros_like(self._nodal(v))
         positions[:, 0] = 1
         return np.asarray((positions.ravel() * (self.mass @ v)).reshape(-1, 3).sum(axis=0))
 
@@ -172,34 +185,31 @@ class Model:
     def position(self, point: tuple[float, float], q: FloatArray) -> FloatArray:
         """Position of the material point (x, y) for q of shape (..., n), m, shape (..., 3)."""
         points = self.mesh.locate(point)
-        N = THIN36.table(points.unit, *self.mesh.sides)[0, 0]
+        N = self.element.table(points.unit)[0, 0]
         return einsum("a,...ai->...i", N, q[..., self._index[points.cells[0]]])
 
     def _local(self, q: FloatArray) -> FloatArray:
-        """Nodal coordinates of each element, shape (elements, 12, 3)."""
+        """Nodal coordinates of each element, shape (elements, a, 3)."""
         return q[self._index]
+
+    def _nodal(self, q: FloatArray) -> FloatArray:
+        """Vectors of each node, shape (nodes, vectors, 3)."""
+        return q.reshape(-1, len(self.vectors), 3)
 
     def _edge(self, edge: str) -> Points:
         """Points along an edge, weighted by its reference length."""
         points = self.mesh.on_edge(edge, gauss(4))
-        along = 2 if edge[0] == "x" else 1
-        length = np.linalg.norm(self._reference_vectors(points)[:, along], axis=-1)
-        return points._replace(weights=points.weights * length)
+        along = self._surface_table(points)[:, _along(edge)]
+        R = einsum("pa,pai->pi", along, self._local(self.reference)[points.cells])
+        return points._replace(weights=points.weights * np.linalg.norm(R, axis=-1))
 
-    def _weighted_by_area(self, points: Points) -> Points:
-        """Points weighted by the reference area sqrt(det A)."""
-        R = self._reference_vectors(points)
-        return points._replace(weights=points.weights * np.linalg.norm(np.cross(R[:, 1], R[:, 2]), axis=-1))
-
-    def _reference_vectors(self, points: Points) -> FloatArray:
-        """R, R_x, R_y at material points, shape (p, 3, 3)."""
-        return einsum("pva,pai->pvi", self._load_table(points), self._local(self.reference)[points.cells])
-
-    def _load_table(self, points: Points) -> FloatArray:
-        return THIN36.table(points.unit, *self.mesh.sides)[:, :3]
+    def _surface_table(self, points: Points) -> FloatArray:
+        """Tables of r, r_x, r_y at material points, shape (p, 3, a)."""
+        return self.element.table(points.unit)[:, :3]
 
     def _add(self, points: Points, density: Density, follows: bool, history: History) -> None:
-        self._loads.append(Load(points.cells, self._load_table(points), points.weights, density, follows, history))
+        table = self._surface_table(points)
+        self._loads.append(Load(points.cells, table, points.weights, density, follows, history))
 
     def _assemble_vector(self, index: IndexArray, local: FloatArray) -> FloatArray:
         total = np.bincount(index.ravel(), weights=local.ravel(), minlength=self.coordinates)
@@ -212,9 +222,6 @@ class Model:
         return sp.coo_array((local.ravel(), (rows.ravel(), cols.ravel())), shape=(n, n)).tocsc()
 
 
-def _flat(mesh: RectangleMesh) -> FloatArray:
-    """Nodal coordinates of the rectangle itself: r = (x, y, 0), r_x and r_y the unit vectors."""
-    e = np.zeros((len(mesh.nodes), 3, 3))
-    e[:, 0, :2] = mesh.nodes
-    e[:, 1, 0] = e[:, 2, 1] = 1
-    return e.ravel()
+def _along(edge: str) -> int:
+    """Row of a shape table that holds the derivative along an edge."""
+    return 2 if edge[0] == "x" else 1

@@ -1,6 +1,7 @@
-"""Quadrature on the unit square: tensor products of Gauss and Lobatto rules."""
+"""Quadrature on unit intervals, squares and cubes: tensor products of Gauss and Lobatto rules."""
 
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 
@@ -26,8 +27,13 @@ def lobatto3() -> Rule:
     return Rule(np.array([[0.0], [0.5], [1.0]]), np.array([1.0, 4.0, 1.0]) / 6)
 
 
+def product(*rules: Rule) -> Rule:
+    """Tensor product of rules on [0, 1], one a dimension; the first varies fastest."""
+    grids = np.meshgrid(*(rule.points[:, 0] for rule in reversed(rules)), indexing="ij")
+    weights = reduce(np.multiply.outer, (rule.weights for rule in reversed(rules)))
+    return Rule(np.stack([grid.ravel() for grid in reversed(grids)], axis=1), np.ravel(weights))
+
+
 def square(rule: Rule) -> Rule:
     """Tensor product of a rule on [0, 1] with itself; xi varies fastest."""
-    x = rule.points[:, 0]
-    eta, xi = np.meshgrid(x, x, indexing="ij")
-    return Rule(np.stack([xi.ravel(), eta.ravel()], axis=1), np.outer(rule.weights, rule.weights).ravel())
+    return product(rule, rule)

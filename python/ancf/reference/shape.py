@@ -2,7 +2,7 @@
 
 A set of shape functions is a space of monomials xi**i eta**j together with the nodal coordinates (position and
 gradients at the corners A, B, C, D); the functions are the basis of the space dual to these coordinates: each is 1 at
-its own nodal coordinate and 0 at all others. The tests compare `THIN36` with the paper's printed formulas.
+its own nodal coordinate and 0 at all others. The tests compare `QUARTIC` with the paper's printed formulas.
 """
 
 from collections.abc import Sequence
@@ -76,8 +76,16 @@ def _shape_functions(exponents: Sequence[tuple[int, int]], vectors: Sequence[tup
     return ShapeFunctions(np.array(exponents, dtype=np.intp), np.array(vectors, dtype=np.intp))
 
 
-THIN36 = _shape_functions(
+QUARTIC = _shape_functions(
     exponents=[(i, j) for i in range(4) for j in range(4) if i + j <= 3] + [(3, 1), (1, 3)],
     vectors=[(0, 0), (1, 0), (0, 1)],
 )
-"""S_C: incomplete quartic with 12 functions; Dufva and Shabana (2005), Appendix 2."""
+"""S_C: incomplete quartic with 12 functions, for r, r_x, r_y; Dufva and Shabana (2005), Appendix 2."""
+
+BICUBIC = _shape_functions(
+    exponents=[(i, j) for i in range(4) for j in range(4)], vectors=[(0, 0), (1, 0), (0, 1), (1, 1)]
+)
+"""Products of cubic Hermite functions, 16, for r, r_x, r_y, r_xy; Dmitrochenko and Pogorelov (2003)."""
+
+BILINEAR = _shape_functions(exponents=[(0, 0), (1, 0), (0, 1), (1, 1)], vectors=[(0, 0)])
+"""Bilinear functions, 4, for one vector at each node."""

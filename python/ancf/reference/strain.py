@@ -1,8 +1,7 @@
-"""Strain measures of a thin element: value, gradient and Hessian with respect to the gradient vectors.
+"""Strain measures: value, gradient and Hessian with respect to the gradient vectors.
 
-A sample sees the nodal coordinates only through g = (r_x, r_y, r_xx, r_yy, r_xy). Values have the components xx, yy,
-2 xy (the sheared one doubled). Shapes: g is (..., 5, 3), value (..., 3), gradient (..., 3, 5, 3) and Hessian
-(..., 3, 5, 3, 5, 3), with component, vector and direction in this order.
+A sample sees the nodal coordinates only through its gradient vectors g, of shape (..., v, 3): r_x, r_y, r_xx, r_yy,
+r_xy of a thin element, r_x, r_y, r_z of a solid. Shapes have component, vector and direction in this order.
 """
 
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from .arrays import FloatArray, einsum
+from .arrays import FloatArray, IndexArray, einsum
 
 R_X, R_Y, R_XX, R_YY, R_XY = range(5)
 
@@ -29,50 +28,63 @@ NORMAL_HESSIAN[:, R_Y, :, R_X, :] = LEVI_CIVITA.transpose(0, 2, 1)
 
 
 class StrainMeasure(Protocol):
-    """A strain measure as a function of the gradient vectors at its samples."""
+    """A strain measure as a function of the v gradient vectors at its samples, with c components."""
 
     def value(self, g: FloatArray) -> FloatArray:
-        """Strain, shape (..., 3)."""
+        """Strain, shape (..., c)."""
         ...
 
     def gradient(self, g: FloatArray) -> FloatArray:
-        """Differentiate the strain, shape (..., 3, 5, 3)."""
+        """Differentiate the strain, shape (..., c, v, 3)."""
         ...
 
     def hessian(self, g: FloatArray) -> FloatArray:
-        """Differentiate the strain twice, shape (..., 3, 5, 3, 5, 3)."""
+        """Differentiate the strain twice, shape (..., c, v, 3, v, 3)."""
         ...
 
 
-class Membrane:
-    """Membrane strain r_a . r_b / 2; Dufva and Shabana (2005), (30), (31).
+@dataclass(frozen=True)
+class GreenLagrange:
+    """Half of the metric, r_a . r_b / 2, the sheared components doubled; the energy subtracts its reference value.
 
-    The reference value R_a . R_b / 2 is subtracted in the energy.
+    Attributes
+    ----------
+    pairs : ndarray, shape (c, 2)
+        The gradient vectors a, b of each component.
     """
 
+    pairs: IndexArray
+
     def value(self, g: FloatArray) -> FloatArray:
-        """Strain, shape (..., 3)."""
-        x, y = g[..., R_X, :], g[..., R_Y, :]
-        return np.stack([_dot(x, x) / 2, _dot(y, y) / 2, _dot(x, y)], axis=-1)
+        """Strain, shape (..., c)."""
+        a, b = self.pairs.T
+        return self._factors() * _dot(g[..., a, :], g[..., b, :])
 
     def gradient(self, g: FloatArray) -> FloatArray:
-        """Differentiate the strain, shape (..., 3, 5, 3)."""
-        x, y = g[..., R_X, :], g[..., R_Y, :]
-        gradient = np.zeros((*g.shape[:-2], 3, 5, 3))
-        gradient[..., 0, R_X, :] = x
-        gradient[..., 1, R_Y, :] = y
-        gradient[..., 2, R_X, :] = y
-        gradient[..., 2, R_Y, :] = x
+        """Differentiate the strain, shape (..., c, v, 3)."""
+        gradient = np.zeros((*g.shape[:-2], len(self.pairs), *g.shape[-2:]))
+        for c, ((a, b), factor) in enumerate(zip(self.pairs, self._factors(), strict=True)):
+            gradient[..., c, a, :] += factor * g[..., b, :]
+            gradient[..., c, b, :] += factor * g[..., a, :]
         return gradient
 
     def hessian(self, g: FloatArray) -> FloatArray:
-        """Differentiate the strain twice, shape (..., 3, 5, 3, 5, 3)."""
-        hessian = np.zeros((*g.shape[:-2], 3, 5, 3, 5, 3))
-        hessian[..., 0, R_X, :, R_X, :] = np.eye(3)
-        hessian[..., 1, R_Y, :, R_Y, :] = np.eye(3)
-        hessian[..., 2, R_X, :, R_Y, :] = np.eye(3)
-        hessian[..., 2, R_Y, :, R_X, :] = np.eye(3)
+        """Differentiate the strain twice, shape (..., c, v, 3, v, 3)."""
+        hessian = np.zeros((*g.shape[:-2], len(self.pairs), *g.shape[-2:], *g.shape[-2:]))
+        for c, ((a, b), factor) in enumerate(zip(self.pairs, self._factors(), strict=True)):
+            hessian[..., c, a, :, b, :] += factor * np.eye(3)
+            hessian[..., c, b, :, a, :] += factor * np.eye(3)
         return hessian
+
+    def _factors(self) -> FloatArray:
+        return np.where(self.pairs[:, 0] == self.pairs[:, 1], 0.5, 1.0)
+
+
+MEMBRANE = GreenLagrange(np.array([(0, 0), (1, 1), (0, 1)]))
+"""Membrane strain xx, yy, 2 xy; Dufva and Shabana (2005), (30), (31)."""
+
+SOLID = GreenLagrange(np.array([(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]))
+"""Strain of a solid xx, yy, zz, 2 yz, 2 xz, 2 xy for g = (r_x, r_y, r_z); Dufva and Shabana (2005), (13)."""
 
 
 @dataclass(frozen=True)

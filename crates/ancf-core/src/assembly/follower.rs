@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-use crate::element::{ElementBlock, Outcome};
+use crate::element::{self, ElementBlock, Outcome};
 use crate::mesh::{Edge, End, Grid};
 use crate::model::History;
 use crate::quadrature::Rule;
@@ -21,13 +21,13 @@ pub(super) struct Follower {
 }
 
 enum Kind {
-    /// A pressure, Pa.
+    /// A pressure, Pa, on the surface of the vectors `r_x` and `r_y`.
     Pressure(f64),
-    /// A moment per length about an edge, N m/m.
-    Moment(f64, Edge),
+    /// A moment per length, N m/m, that turns one vector about the other, the tangent of an edge.
+    Moment(f64),
 }
 
-/// Shape functions at a quadrature point.
+/// Shape functions at a quadrature point: of the position and of the two vectors that the load depends on.
 struct Point {
     weight: f64,
     value: Vec<f64>,
@@ -39,31 +39,39 @@ impl Follower {
     /// A pressure on all elements.
     pub fn pressure(block: usize, elements: &dyn ElementBlock, grid: &Grid, pressure: f64, history: History) -> Self {
         let [l, w] = grid.element_sides();
-        let points = Rule::Gauss(5).square().into_iter().map(|(at, weight)| Point::new(elements, at, weight * l * w));
+        let points = Rule::Gauss(5).square().into_iter().map(|(at, weight)| {
+            let [value, x, y] = [[0, 0], [1, 0], [0, 1]].map(|orders| elements.derivative(orders, at));
+            Point { weight: weight * l * w, value, x, y }
+        });
         let loaded = vec![true; elements.elements()];
         Self { block, history, kind: Kind::Pressure(pressure), loaded, points: points.collect() }
     }
 
-    /// A moment about an edge; its reference length is measured with `reference`, the nodal coordinates at rest.
+    /// A moment about an edge of elements of the type `element`.
     pub fn moment(
         block: usize,
+        element: element::Kind,
         elements: &dyn ElementBlock,
         grid: &Grid,
         edge: Edge,
         per_length: f64,
         history: History,
     ) -> Self {
-        let along = 1 - edge.across;
+        let (sides, along) = (grid.element_sides(), 1 - edge.across);
         let constant = f64::from(edge.end == End::High);
+        // Outward x normal: the axis that turns the outward direction towards the normal.
+        let axis = if (edge.across == 0) == (edge.end == End::Low) { 1.0 } else { -1.0 };
         let points = Rule::Gauss(4).points().into_iter().map(|(s, weight)| {
-            let at = if edge.across == 0 { [constant, s] } else { [s, constant] };
-            Point::new(elements, at, weight * grid.element_sides()[along])
+            let (at, orders) = if edge.across == 0 { ([constant, s], [0, 1]) } else { ([s, constant], [1, 0]) };
+            let value = elements.derivative([0, 0], at);
+            let (x, y) = (element.edge_director(sides, edge.across, at), elements.derivative(orders, at));
+            Point { weight: weight * sides[along], value, x, y }
         });
         let mut loaded = vec![false; elements.elements()];
         for element in grid.elements_at(edge) {
             loaded[element] = true;
         }
-        Self { block, history, kind: Kind::Moment(per_length, edge), loaded, points: points.collect() }
+        Self { block, history, kind: Kind::Moment(axis * per_length), loaded, points: points.collect() }
     }
 
     /// Adds the load, `factor` times, to `force` over all coordinates.
@@ -128,7 +136,7 @@ impl Follower {
                 let Stiffness { r, x: on_x, y: on_y } = self.conjugates(point, vectors, reference, q, factor).1;
                 let tables = [&point.value, &point.x, &point.y];
                 let [value, by_x, by_y] = tables.map(|table| interpolate(table, vectors, x));
-                // The skew half of [[0, r_x, r_y], [0, x_x, x_y], [0, y_x, y_y]], which couples r, r_x and r_y.
+                // The skew half of [[0, r_x, r_y], [0, x_x, x_y], [0, y_x, y_y]], which couples r and the two vectors.
                 let parts = [
                     r[0] * by_x + r[1] * by_y,
                     on_x[0] * by_x + on_x[1] * by_y
@@ -150,7 +158,7 @@ impl Follower {
         }
     }
 
-    /// What the load does work on at a point: vectors conjugate to r, r_x and r_y, and their derivatives.
+    /// What the load does work on at a point: vectors conjugate to r and the two vectors, and their derivatives.
     fn conjugates(
         &self,
         point: &Point,
@@ -161,56 +169,51 @@ impl Follower {
     ) -> (Conjugates, Stiffness) {
         let x = interpolate(&point.x, vectors, q);
         let y = interpolate(&point.y, vectors, q);
-        let normal = x.cross(&y);
         let zero = Vector3::zeros();
         match self.kind {
             Kind::Pressure(pressure) => {
                 let p = pressure * factor * point.weight;
                 // d(r_x x r_y) = r_x x dr_y - r_y x dr_x.
                 let stiffness = Stiffness { r: [-p * y.cross_matrix(), p * x.cross_matrix()], ..Stiffness::default() };
-                ([p * normal, zero, zero], stiffness)
+                ([p * x.cross(&y), zero, zero], stiffness)
             }
-            Kind::Moment(per_length, edge) => {
-                // With n the unit normal and the unit outward conormal nu = c^o outward + c^s along, the edge turns by
-                // n . (c^o d(outward) + c^s d(along)): c^o = |along| / |r_x x r_y|, c^s makes nu normal to the edge.
-                let (outward, along) = if edge.across == 0 { (x, y) } else { (y, x) };
-                let table = if edge.across == 0 { &point.y } else { &point.x };
-                let length = interpolate(table, vectors, reference).norm();
-                let sign = if edge.end == End::High { 1.0 } else { -1.0 };
-                let moment = sign * per_length * factor * point.weight * length;
-
+            Kind::Moment(per_length) => {
+                // The part of x normal to the edge, x - c y, turns by m . (dx - c dy) / |x - c y| about the unit tangent
+                // t = y / |y|, with the unit vector m along y x x; changes of c do no work. |x - c y| = |y x x| / |y|.
+                let length = interpolate(&point.y, vectors, reference).norm();
+                let moment = per_length * factor * point.weight * length;
+                let normal = y.cross(&x);
                 let square = normal.norm_squared();
                 let lever = normal / square;
-                // Derivative of n / |n|^2 with respect to n, then with respect to r_x and r_y.
+                // Derivative of n / |n|^2 with respect to n, then with respect to x and y.
                 let inverse = (Matrix3::identity() - 2.0 / square * normal * normal.transpose()) / square;
-                let by_x = -inverse * y.cross_matrix();
-                let by_y = inverse * x.cross_matrix();
-                let (by_outward, by_along) = if edge.across == 0 { (by_x, by_y) } else { (by_y, by_x) };
+                let by_x = inverse * y.cross_matrix();
+                let by_y = -inverse * x.cross_matrix();
 
-                let size = along.norm();
-                let tangent = along / size;
-                let oblique = outward.dot(&tangent);
-                let force_outward = moment * size * lever;
-                let force_along = -moment * oblique * lever;
-                let bent = (Matrix3::identity() - tangent * tangent.transpose()) * outward / size;
-                let oo = moment * size * by_outward;
-                let os = moment * (size * by_along + lever * tangent.transpose());
-                let so = -moment * (oblique * by_outward + lever * tangent.transpose());
-                let ss = -moment * (oblique * by_along + lever * bent.transpose());
-                if edge.across == 0 {
-                    ([zero, force_outward, force_along], Stiffness { x: [oo, os], y: [so, ss], ..Stiffness::default() })
-                } else {
-                    ([zero, force_along, force_outward], Stiffness { x: [ss, so], y: [os, oo], ..Stiffness::default() })
-                }
+                let size = y.norm();
+                let tangent = y / size;
+                let oblique = x.dot(&tangent);
+                let bent = (Matrix3::identity() - tangent * tangent.transpose()) * x / size;
+                let force_x = moment * size * lever;
+                let force_y = -moment * oblique * lever;
+                let stiffness = Stiffness {
+                    x: [moment * size * by_x, moment * (size * by_y + lever * tangent.transpose())],
+                    y: [
+                        -moment * (oblique * by_x + lever * tangent.transpose()),
+                        -moment * (oblique * by_y + lever * bent.transpose()),
+                    ],
+                    ..Stiffness::default()
+                };
+                ([zero, force_x, force_y], stiffness)
             }
         }
     }
 }
 
-/// Vectors conjugate to r, r_x and r_y.
+/// Vectors conjugate to r and the two vectors.
 type Conjugates = [Vector3<f64>; 3];
 
-/// Derivatives of the vectors conjugate to r, r_x, r_y with respect to r_x and r_y.
+/// Derivatives of the vectors conjugate to r and the two vectors with respect to these.
 #[derive(Default)]
 struct Stiffness {
     r: [Matrix3<f64>; 2],
@@ -223,13 +226,6 @@ impl Stiffness {
     fn between(&self, point: &Point, a: usize, b: usize) -> Matrix3<f64> {
         let row = |pair: &[Matrix3<f64>; 2]| pair[0] * point.x[b] + pair[1] * point.y[b];
         row(&self.r) * point.value[a] + row(&self.x) * point.x[a] + row(&self.y) * point.y[a]
-    }
-}
-
-impl Point {
-    fn new(elements: &dyn ElementBlock, at: [f64; 2], weight: f64) -> Self {
-        let [value, x, y] = [[0, 0], [1, 0], [0, 1]].map(|orders| elements.derivative(orders, at));
-        Self { weight, value, x, y }
     }
 }
 

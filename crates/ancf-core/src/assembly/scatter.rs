@@ -17,6 +17,9 @@ use super::numbering::{Node, Numbering};
 /// Nodes handled by one task.
 const TASK: usize = 64;
 
+/// Nodes whose forces are summed by one task.
+const FORCE_TASK: usize = 512;
+
 /// Marks rows that are not stored in the lower triangle.
 const ABOVE: u32 = u32::MAX;
 
@@ -44,6 +47,7 @@ struct Column {
 #[derive(Clone, Debug)]
 pub(super) struct Scatter {
     pattern: Arc<Pattern>,
+    nodes: Vec<Node>,
     columns: Vec<Column>,
     free: Vec<u8>,
     incidents: Vec<Incident>,
@@ -115,7 +119,16 @@ impl Scatter {
             (0..size).map(|j| (0..size).map(|i| entry(i, j)).collect()).collect()
         });
         let entries = entries.collect();
-        Ok(Self { pattern, columns, free, incidents, place: place.clone(), cells: cells.clone(), entries })
+        Ok(Self {
+            pattern,
+            nodes: nodes.clone(),
+            columns,
+            free,
+            incidents,
+            place: place.clone(),
+            cells: cells.clone(),
+            entries,
+        })
     }
 
     /// The pattern of the tangent.
@@ -151,49 +164,131 @@ impl Scatter {
         let origin = self.pattern.col_ptr()[columns[0].first];
         values.fill(0.0);
         for column in columns {
-            let own = &self.free[column.free.clone()];
             for incident in &self.incidents[column.incidents.clone()] {
                 let (block, element) = (incident.block as usize, incident.element as usize);
                 let n = blocks[block].vectors_per_element();
                 let size = 9 * n * (n + 1) / 2;
                 let tangent = &outcomes[block].tangent[element * size..(element + 1) * size];
-                let per_node = 3 * n / 4;
-                let corner = incident.corner as usize;
-                for (jj, &j) in own.iter().enumerate() {
-                    let diagonal = self.pattern.col_ptr()[column.first + jj] - origin;
-                    let entries = &self.entries[block][corner * per_node + j as usize];
-                    let add = |target: &mut [f64], corner: usize, rows: &[u8]| {
-                        let entries = &entries[corner * per_node..(corner + 1) * per_node];
-                        for (value, &i) in target.iter_mut().zip(rows) {
-                            *value += tangent[entries[i as usize] as usize];
-                        }
-                    };
-                    add(&mut values[diagonal..diagonal + own.len() - jj], corner, &own[jj..]);
-                    let below = diagonal + own.len() - jj;
-                    for (other, &offset) in incident.offsets.iter().enumerate() {
-                        if other == corner || offset == ABOVE {
-                            continue;
-                        }
-                        let rows = &self.columns[self.place[self.cells[block][element][other]]];
-                        let rows = &self.free[rows.free.clone()];
-                        add(&mut values[below + offset as usize..][..rows.len()], other, rows);
+                for other in 0..4 {
+                    let offset = incident.offsets[other];
+                    if other != incident.corner as usize && offset == ABOVE {
+                        continue;
+                    }
+                    let rows = &self.columns[self.place[self.cells[block][element][other]]];
+                    let corners = [other, incident.corner as usize];
+                    if column.free.len() == 3 * n / 4 && rows.free.len() == 3 * n / 4 {
+                        self.add_whole(column, origin, corners, offset as usize, n / 4, tangent, values);
+                    } else {
+                        self.add_free(column, rows, origin, corners, offset as usize, block, tangent, values);
                     }
                 }
             }
         }
     }
 
+    /// Adds what an element gives for the columns of one node and the rows of another, or the same, none of whose
+    /// coordinates are fixed: `corners` are those of the rows and of the columns, `kinds` the vectors of a node.
+    #[expect(clippy::too_many_arguments, reason = "the inner loop of the sum")]
+    fn add_whole(
+        &self,
+        column: &Column,
+        origin: usize,
+        [row_corner, column_corner]: [usize; 2],
+        offset: usize,
+        kinds: usize,
+        tangent: &[f64],
+        values: &mut [f64],
+    ) {
+        let starts = &self.pattern.col_ptr()[column.first..][..3 * kinds];
+        let same = row_corner == column_corner;
+        for v in 0..kinds {
+            let b = column_corner * kinds + v;
+            for u in (if same { v } else { 0 })..kinds {
+                let a = row_corner * kinds + u;
+                let block: &[f64; 9] = tangent[9 * packed(a.min(b), a.max(b))..].first_chunk().expect("a whole block");
+                for c in 0..3 {
+                    let j = 3 * v + c;
+                    let start = starts[j] - origin;
+                    if same && u == v {
+                        for (i, value) in values[start..start + 3 - c].iter_mut().enumerate() {
+                            *value += block[3 * c + c + i];
+                        }
+                        continue;
+                    }
+                    let first = start + 3 * u + if same { 0 } else { 3 * kinds + offset } - j;
+                    let target: &mut [f64; 3] = values[first..].first_chunk_mut().expect("rows of the column");
+                    for i in 0..3 {
+                        target[i] += if a <= b { block[3 * i + c] } else { block[3 * c + i] };
+                    }
+                }
+            }
+        }
+    }
+
+    /// The same where some of the coordinates are fixed.
+    #[expect(clippy::too_many_arguments, reason = "the inner loop of the sum")]
+    fn add_free(
+        &self,
+        column: &Column,
+        rows: &Column,
+        origin: usize,
+        [row_corner, column_corner]: [usize; 2],
+        offset: usize,
+        block: usize,
+        tangent: &[f64],
+        values: &mut [f64],
+    ) {
+        let own = &self.free[column.free.clone()];
+        let rows = &self.free[rows.free.clone()];
+        let per_node = self.entries[block].len() / 4;
+        for (jj, &j) in own.iter().enumerate() {
+            let diagonal = self.pattern.col_ptr()[column.first + jj] - origin;
+            let (first, rows) = match row_corner == column_corner {
+                true => (diagonal, &rows[jj..]),
+                false => (diagonal + own.len() - jj + offset, rows),
+            };
+            let entries = &self.entries[block][column_corner * per_node + j as usize][row_corner * per_node..];
+            for (value, &i) in values[first..].iter_mut().zip(rows) {
+                *value += tangent[entries[i as usize] as usize];
+            }
+        }
+    }
+
     /// Sums what the elements give on each nodal vector into `force`, over all coordinates of the model.
     pub fn sum_forces(&self, blocks: &[Box<dyn ElementBlock>], outcomes: &[Outcome], force: &mut [f64]) {
+        if self.nodes.len() <= FORCE_TASK {
+            return self.sum_node_forces(0, blocks, outcomes, force);
+        }
+        let mut tasks = Vec::with_capacity(self.nodes.len() / FORCE_TASK + 1);
+        let mut rest = force;
+        for first in (0..self.nodes.len()).step_by(FORCE_TASK) {
+            let end = self
+                .nodes
+                .get(first + FORCE_TASK)
+                .map_or(rest.len(), |next| 3 * (next.first_vector - self.nodes[first].first_vector));
+            let (part, others) = rest.split_at_mut(end);
+            tasks.push((first, part));
+            rest = others;
+        }
+        tasks.into_par_iter().for_each(|(first, part)| self.sum_node_forces(first, blocks, outcomes, part));
+    }
+
+    /// The same for the nodes from `first` on whose coordinates are in `force`.
+    fn sum_node_forces(&self, first: usize, blocks: &[Box<dyn ElementBlock>], outcomes: &[Outcome], force: &mut [f64]) {
         force.fill(0.0);
-        for (block, outcome) in blocks.iter().zip(outcomes) {
-            let n = block.vectors_per_element();
-            for (element, local) in outcome.force.chunks(3 * n).enumerate() {
-                for (vector, part) in block.vectors(element).iter().zip(local.chunks(3)) {
-                    let target = &mut force[3 * *vector as usize..][..3];
-                    for (sum, value) in target.iter_mut().zip(part) {
-                        *sum += value;
-                    }
+        let mut rest = force;
+        for node in first..self.nodes.len() {
+            if rest.is_empty() {
+                break;
+            }
+            let (target, others) = rest.split_at_mut(3 * self.nodes[node].vectors);
+            rest = others;
+            for incident in &self.incidents[self.columns[self.place[node]].incidents.clone()] {
+                let block = incident.block as usize;
+                let size = 3 * blocks[block].vectors_per_element();
+                let begin = incident.element as usize * size + incident.corner as usize * target.len();
+                for (sum, part) in target.iter_mut().zip(&outcomes[block].force[begin..]) {
+                    *sum += part;
                 }
             }
         }

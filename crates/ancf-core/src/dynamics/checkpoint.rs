@@ -9,12 +9,14 @@ use crate::report::Counts;
 use super::Options;
 use super::control::Controller;
 use super::equations::Equations;
+use super::fingerprint::Fingerprint;
 use super::state::Instantaneous;
 
 /// A motion at the end of an accepted step, from which [`simulate`](super::simulate) goes on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
     pub(super) method: String,
+    pub(super) fingerprint: Fingerprint,
     pub(super) now: Instantaneous,
     pub(super) controller: Controller,
     pub(super) tangent: Option<Tangent>,
@@ -47,7 +49,7 @@ impl Tangent {
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp1";
+const MAGIC: &[u8; 8] = b"ancf-cp2";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -66,7 +68,8 @@ impl Checkpoint {
         InputError::check("checkpoint", "that of another mesh or support", fits, "that of a run of this model")?;
         let method = options.method.name();
         let given = format!("that of method \"{}\"", self.method);
-        InputError::check("checkpoint", given, self.method == method, &format!("that of method \"{method}\""))
+        InputError::check("checkpoint", given, self.method == method, &format!("that of method \"{method}\""))?;
+        self.fingerprint.check(&Fingerprint::of(system.model(), options))
     }
 
     /// The checkpoint, and the outputs so far, as bytes for a file; numbers in 8 bytes, lowest first.
@@ -81,9 +84,10 @@ impl Checkpoint {
     }
 
     fn write(&self, words: &mut Words) {
-        let Self { method, now, controller, tangent, counts } = self;
+        let Self { method, fingerprint, now, controller, tangent, counts } = self;
         words.count(method.len());
         words.0.extend(method.as_bytes());
+        words.0.extend(fingerprint.0.iter().flat_map(|digest| digest.to_le_bytes()));
         for x in [now.t, now.lag, now.damping, now.work, now.dissipated] {
             words.number(x);
         }
@@ -94,7 +98,9 @@ impl Checkpoint {
         words.number(controller.step);
         words.number(controller.last_error);
         words.count(usize::from(controller.rejected));
-        for count in [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.factorizations] {
+        for count in
+            [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.forces, counts.factorizations]
+        {
             words.count(count);
         }
         words.count(usize::from(tangent.is_some()));
@@ -126,6 +132,10 @@ impl Checkpoint {
     fn read(words: &mut Reader<'_>) -> Option<Self> {
         let length = words.count()?;
         let method = String::from_utf8(words.take(length)?.to_vec()).ok()?;
+        let mut fingerprint = Fingerprint([0; 4]);
+        for digest in &mut fingerprint.0 {
+            *digest = u64::from_le_bytes(words.take(8)?.try_into().ok()?);
+        }
         let [t, lag, damping, work, dissipated] = words.array()?;
         let (q, v, a, external) = (words.numbers()?, words.numbers()?, words.numbers()?, words.numbers()?);
         let negative_pivots = words.count()?.checked_sub(1);
@@ -137,6 +147,7 @@ impl Checkpoint {
             rejected: words.count()?,
             unsolved: words.count()?,
             iterations: words.count()?,
+            forces: words.count()?,
             factorizations: words.count()?,
             ..Counts::default()
         };
@@ -147,7 +158,7 @@ impl Checkpoint {
             let values = words.numbers()?;
             tangent = Some(Tangent { kept, values, at: (words.numbers()?, words.numbers()?) });
         }
-        Some(Self { method, now, controller, tangent, counts })
+        Some(Self { method, fingerprint, now, controller, tangent, counts })
     }
 }
 

@@ -1,10 +1,11 @@
 //! Generalised-alpha and, as members of the family, HHT-alpha and Newmark's trapezoidal rule.
 
-use crate::nonlinear::{Failure, Problem, Velocity};
+use crate::nonlinear::Failure;
 use crate::observe::Observer;
 
 use super::equations::Equations;
 use super::method::Integrator;
+use super::stage::Stage;
 use super::state::Instantaneous;
 
 /// The generalised-alpha family. The *forces* at both ends of a step are averaged, not the configurations:
@@ -61,8 +62,6 @@ impl Integrator for GeneralizedAlpha {
         let h = next.t - now.t;
         let n = now.q.len();
 
-        // Newmark's position for zero acceleration at the end, and the prediction for an unchanged acceleration.
-        let mut origin: Vec<f64> = (0..n).map(|i| now.q[i] + h * now.v[i] + h * h * (0.5 - beta) * now.a[i]).collect();
         let mut constant = vec![0.0; n];
         if alpha_f != 0.0 {
             equations.force(now.t, &now.q, &now.v, &mut constant, &mut next.external);
@@ -74,38 +73,25 @@ impl Integrator for GeneralizedAlpha {
             let inertia: Vec<f64> = now.a.iter().map(|a| alpha_m * a).collect();
             equations.inertia.add_product(&inertia, &mut constant);
         }
-        for i in 0..n {
-            next.q[i] = origin[i] + h * h * beta * now.a[i];
-        }
-        // Velocities are `rate (q - still)`.
-        let rate = gamma / (beta * h);
-        let mut still: Vec<f64> =
-            (0..n).map(|i| origin[i] - (now.v[i] + h * (1.0 - gamma) * now.a[i]) / rate).collect();
         next.lag = (alpha_f - alpha_m) * h;
         equations.prescribe(next);
-        for i in equations.moved() {
-            origin[i] = next.q[i] - beta * h * h * next.a[i];
-            still[i] = next.q[i] - next.v[i] / rate;
-        }
-        let problem = Problem {
-            t: next.t,
-            mass: (1.0 - alpha_m) / (beta * h * h),
-            stiffness: 1.0 - alpha_f,
-            origin: &origin,
-            constant: Some(&constant),
-            velocity: equations.system.is_damped().then_some(Velocity { rate, still: &still }),
+        // Newmark's formulas without the acceleration at the end.
+        let stage = Stage {
+            position: (0..n).map(|i| now.q[i] + h * now.v[i] + h * h * (0.5 - beta) * now.a[i]).collect(),
+            velocity: (0..n).map(|i| now.v[i] + h * (1.0 - gamma) * now.a[i]).collect(),
+            length: h * beta.sqrt(),
+            slope: gamma / beta.sqrt(),
+            inertia: 1.0 - alpha_m,
+            forces: 1.0 - alpha_f,
+            constant: Some(constant),
             start: None,
         };
-        let report = equations.newton.solve(equations.system, &problem, &mut next.q, Some(&now.q), observer)?;
+        stage.solve(equations, next, &now.a, &now.q, observer)?;
 
         let missing = h * h * (1.0 / 6.0 - beta + 0.5 * (alpha_f - alpha_m));
         for i in 0..n {
-            next.a[i] = (next.q[i] - origin[i]) / (beta * h * h);
-            next.v[i] = now.v[i] + h * ((1.0 - gamma) * now.a[i] + gamma * next.a[i]);
             error[i] = missing * (next.a[i] - now.a[i]);
         }
-        equations.prescribe(next);
-        next.negative_pivots = Some(report.negative_pivots);
         equations.load(next);
         next.accumulate(now);
         Ok(())

@@ -9,6 +9,7 @@ use super::energy_momentum::EnergyMomentum;
 use super::equations::Equations;
 use super::esdirk::ESDIRK;
 use super::generalized_alpha::GeneralizedAlpha;
+use super::rigid::Rigid;
 use super::state::Instantaneous;
 use super::tr_bdf2::TR_BDF2;
 use super::verlet::Verlet;
@@ -41,10 +42,12 @@ pub enum Method {
     },
     /// Dormand and Prince's Runge-Kutta pair: explicit, fifth order, for references.
     Rk,
+    /// No body deforms: six motions each, by the pair of `Rk`.
+    Rigid,
 }
 
 impl Method {
-    /// All methods, each with its usual parameters.
+    /// All methods for flexible bodies, each with its usual parameters.
     pub const ALL: [Self; 8] = [
         Self::Hht { alpha: -0.05 },
         Self::GeneralizedAlpha { rho_inf: 0.9 },
@@ -67,6 +70,7 @@ impl Method {
             Self::EnergyMomentum => "energy_momentum",
             Self::Verlet { .. } => "verlet",
             Self::Rk => "rk",
+            Self::Rigid => "rigid",
         }
     }
 
@@ -76,8 +80,10 @@ impl Method {
     ///
     /// There must be one of that name.
     pub fn find(name: &str) -> Result<Self, InputError> {
-        let found = Self::ALL.into_iter().find(|method| method.name() == name);
-        found.ok_or_else(|| InputError::new("method", format!("\"{name}\""), Self::ALL.map(Self::name).join(", ")))
+        let methods = [&Self::ALL[..], &[Self::Rigid]].concat();
+        let names: Vec<_> = methods.iter().map(|method| method.name()).collect();
+        let found = methods.iter().find(|method| method.name() == name);
+        found.copied().ok_or_else(|| InputError::new("method", format!("\"{name}\""), names.join(", ")))
     }
 
     /// The order of convergence.
@@ -117,6 +123,7 @@ impl Method {
             Self::EnergyMomentum => Box::new(EnergyMomentum),
             Self::Verlet { .. } => Box::new(Verlet),
             Self::Rk => Box::new(DORMAND_PRINCE),
+            Self::Rigid => Box::new(Rigid),
         }
     }
 }
@@ -134,6 +141,15 @@ pub(super) trait Integrator {
     /// For explicit methods the largest stable step times the highest frequency (rad/s).
     fn explicit_limit(&self) -> Option<f64> {
         None
+    }
+
+    /// Finds the accelerations of the state at the start, whose positions and velocities are known.
+    ///
+    /// # Errors
+    ///
+    /// The forces must be finite.
+    fn begin(&self, equations: &mut Equations<'_>, at: &mut Instantaneous) -> Result<(), Failure> {
+        equations.accelerate(at)
     }
 
     /// Advances from `now` to the time of `next` and fills all the rest of `next`, and an estimate of what the step adds

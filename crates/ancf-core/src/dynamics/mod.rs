@@ -2,8 +2,9 @@
 //!
 //! `method` is the registry: a [`Method`] is a name with parameters, an `Integrator` makes one step. The integrators are
 //! `generalized_alpha` (also HHT and Newmark), `runge_kutta` with the tableaux `tr_bdf2`, `esdirk` and
-//! `dormand_prince`, `energy_momentum` and `verlet`. What they need of a model is in `equations`: implicit ones put
-//! their step into the one nonlinear problem of [`nonlinear`](crate::nonlinear), explicit ones ask for accelerations,
+//! `dormand_prince`, `energy_momentum`, `verlet` and, for bodies that do not deform, `rigid`. What they need of a model
+//! is in `equations`: implicit ones state their step as a `stage`, which is the one nonlinear problem of
+//! [`nonlinear`](crate::nonlinear), explicit ones ask for accelerations,
 //! which `inertia` finds. `control` chooses the length of steps, `stability` limits it, `simulation` strings steps
 //! together, and `checkpoint` is what is needed to go on later.
 
@@ -13,12 +14,15 @@ mod dormand_prince;
 mod energy_momentum;
 mod equations;
 mod esdirk;
+mod fingerprint;
 mod generalized_alpha;
 mod inertia;
 mod method;
+mod rigid;
 mod runge_kutta;
 mod simulation;
 mod stability;
+mod stage;
 mod state;
 mod tr_bdf2;
 mod verlet;
@@ -69,6 +73,9 @@ impl Options {
         InputError::check("until", self.until, positive(self.until), "a positive number, s")?;
         self.steps.validate()?;
         self.method.validate()?;
+        if self.method == Method::Rigid {
+            rigid::check(system.model())?;
+        }
         let inside = self.outputs.iter().all(|t| (0.0..=self.until).contains(t));
         let increasing = self.outputs.is_sorted_by(|a, b| a < b);
         let allowed = format!("increasing times from 0 to {}", self.until);
@@ -121,7 +128,7 @@ pub fn simulate(
     let mut counts = Counts::default();
     let mut reached = 0.0;
     let end = run(system, options, checkpoint, &mut counts, &mut reached, observer);
-    let counts = Counts { factorizations: counts.factorizations, ..counts.of(system) };
+    let counts = Counts { forces: counts.forces, factorizations: counts.factorizations, ..counts.of(system) };
     let seconds = Seconds::new(system, start.elapsed());
     Ok(Run { outcome: Outcome::from_end(end), reached, jumps: Vec::new(), counts, seconds })
 }

@@ -1,10 +1,11 @@
 //! Runge-Kutta methods, explicit and diagonally implicit, from their tableaux.
 
-use crate::nonlinear::{Failure, Problem, Velocity};
+use crate::nonlinear::Failure;
 use crate::observe::Observer;
 
 use super::equations::Equations;
 use super::method::Integrator;
+use super::stage::Stage;
 use super::state::Instantaneous;
 
 /// A Runge-Kutta pair whose first stage is the end of the last step and whose last stage is the end of this one.
@@ -25,7 +26,7 @@ pub(super) struct Tableau {
 
 /// An error of the velocity goes on to move positions. It is counted with what it has done after so many steps: enough
 /// that plates of rubber and of steel keep the tolerances in `tests/control.rs`.
-const CARRIED: f64 = 4.0;
+pub(super) const CARRIED: f64 = 4.0;
 
 impl Tableau {
     /// Where each stage lies in the step, from 0 to 1.
@@ -98,39 +99,28 @@ impl Integrator for Tableau {
                 }
                 sum
             };
-            // Position and velocity without what the stage itself adds.
-            let mut still = known(&|stage| &stage.v, &now.q);
+            // Without what the stage itself adds.
+            let position = known(&|stage| &stage.v, &now.q);
             let velocity = known(&|stage| &stage.a, &now.v);
             if g == 0.0 {
-                (stage.q, stage.v) = (still, velocity);
+                (stage.q, stage.v) = (position, velocity);
                 equations.prescribe(&mut stage);
                 equations.accelerate(&mut stage)?;
             } else {
-                let mut origin: Vec<f64> = (0..n).map(|k| still[k] + g * velocity[k]).collect();
-                let last = &stages[i - 1];
-                stage.q = (0..n).map(|k| origin[k] + g * g * last.a[k]).collect();
-                equations.prescribe(&mut stage);
-                for k in equations.moved() {
-                    origin[k] = stage.q[k] - g * g * stage.a[k];
-                    still[k] = stage.q[k] - g * stage.v[k];
-                }
                 factor = 1.0 / (g * g);
-                let problem = Problem {
-                    t: stage.t,
-                    mass: factor,
-                    stiffness: 1.0,
-                    origin: &origin,
-                    velocity: equations.system.is_damped().then_some(Velocity { rate: 1.0 / g, still: &still }),
-                    ..Problem::default()
-                };
-                let Equations { system, newton, .. } = equations;
-                let report = newton.solve(system, &problem, &mut stage.q, Some(&last.q), observer)?;
-                for k in 0..n {
-                    stage.a[k] = (stage.q[k] - origin[k]) * factor;
-                    stage.v[k] = (stage.q[k] - still[k]) / g;
-                }
-                stage.negative_pivots = Some(report.negative_pivots);
                 equations.prescribe(&mut stage);
+                let last = &stages[i - 1];
+                let problem = Stage {
+                    position: (0..n).map(|k| position[k] + g * velocity[k]).collect(),
+                    velocity,
+                    length: g,
+                    slope: 1.0,
+                    inertia: 1.0,
+                    forces: 1.0,
+                    constant: None,
+                    start: None,
+                };
+                problem.solve(equations, &mut stage, &last.a, &last.q, observer)?;
                 equations.load(&mut stage);
             }
             stages.push(stage);

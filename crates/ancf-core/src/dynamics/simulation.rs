@@ -8,6 +8,7 @@ use super::Options;
 use super::checkpoint::{Checkpoint, Tangent};
 use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
+use super::fingerprint::Fingerprint;
 use super::method::Integrator;
 use super::stability::highest_frequency;
 use super::state::Instantaneous;
@@ -30,14 +31,14 @@ pub(super) struct Simulation<'a> {
     tangent: Option<Tangent>,
     /// Steps of this run and, after a checkpoint, all counts of the run before.
     counts: Counts,
-    /// Factorisations of the system before this run.
-    earlier: usize,
+    /// Evaluations and factorisations of the system before this run.
+    earlier: [usize; 2],
 }
 
 impl<'a> Simulation<'a> {
     pub fn new(equations: Equations<'a>, options: &'a Options) -> Self {
         let n = equations.system.coordinates();
-        let earlier = equations.system.factorizations();
+        let earlier = [equations.system.forces(), equations.system.factorizations()];
         let mut allowed = vec![f64::INFINITY; n];
         if let Steps::Controlled(Tolerances { rtol, atol, .. }) = options.steps {
             for coordinate in equations.inertia.positions().iter().flat_map(|a| 3 * a..3 * a + 3) {
@@ -62,7 +63,8 @@ impl<'a> Simulation<'a> {
     pub fn counts(&self) -> Counts {
         Counts {
             iterations: self.counts.iterations + self.equations.newton.iterations(),
-            factorizations: self.counts.factorizations + self.equations.system.factorizations() - self.earlier,
+            forces: self.counts.forces + self.equations.system.forces() - self.earlier[0],
+            factorizations: self.counts.factorizations + self.equations.system.factorizations() - self.earlier[1],
             ..self.counts
         }
     }
@@ -81,7 +83,7 @@ impl<'a> Simulation<'a> {
         let zeros = vec![0.0; q.len()];
         let v = self.options.velocity.clone().unwrap_or_else(|| zeros.clone());
         self.now = Instantaneous { q, v, a: zeros.clone(), external: zeros, ..Instantaneous::default() };
-        self.equations.accelerate(&mut self.now)?;
+        self.integrator.begin(&mut self.equations, &mut self.now)?;
         self.next = self.now.clone();
         self.check_limit()?;
         self.controller = Controller::new(match self.options.steps {
@@ -245,6 +247,7 @@ impl<'a> Simulation<'a> {
     fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             method: self.options.method.name().to_owned(),
+            fingerprint: Fingerprint::of(self.equations.system.model(), self.options),
             now: self.now.clone(),
             controller: self.controller,
             tangent: self.tangent.clone(),
@@ -258,7 +261,7 @@ impl<'a> Simulation<'a> {
         (self.now, self.controller, self.counts) = (now, controller, counts);
         if let Some(tangent) = &tangent {
             tangent.restore(&mut self.equations)?;
-            self.earlier = self.equations.system.factorizations();
+            self.earlier[1] = self.equations.system.factorizations();
         }
         self.tangent = tangent;
         Ok(())

@@ -3,14 +3,15 @@
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use crate::lanes::{Lanes, MAX_LANES, Vector, arch};
+use crate::lanes::{Aligned, Lanes, MAX_LANES, Transpose, Vector, arch};
 use crate::material::Damping;
 use crate::strain::{self, packed};
 
 use super::classes::Classes;
 use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
 use super::corners::{combine_all, distribute, distribute_all};
-use super::kernel::{Batch, Flow, Tangent, Totals};
+use super::kernel::{Batch, Flow, Tangent, Totals, point_constants};
+use super::operations::Operations;
 use super::tables::{Group, Tables};
 
 /// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
@@ -91,8 +92,13 @@ pub trait ElementBlock: Send + Sync {
     fn weight(&self, element: usize) -> &[f64];
     /// Number of different reference shapes among the elements.
     fn classes(&self) -> usize;
+    /// Memory of the elements, bytes: the numbers of their nodal vectors and of their classes, and the constants of each
+    /// class; without the shape tables, which they all share.
+    fn bytes(&self) -> usize;
     /// Mass-proportional and viscous damping.
     fn damping(&self) -> Damping;
+    /// Floating-point operations of an element.
+    fn operations(&self) -> Operations;
     /// Evaluates all elements; the tangents if they are wanted.
     fn evaluate(&self, at: At<'_>, want: Option<Want<'_>>, outcome: &mut Outcome);
     /// The derivatives of an element's shape functions, `in_x` and `in_y` times, at `(xi, eta)`.
@@ -142,7 +148,7 @@ fn couplings<const N: usize>(tables: &Tables<N>, classes: &[Constants]) -> Coupl
     let mut start = 0;
     for group in &tables.groups {
         if let Group::Projected(samples, projection) = group {
-            start += samples.tables.len() * COMPONENTS;
+            start += samples.tables.len() * point_constants(COMPONENTS);
             let modes = projection.modes.len();
             let coupled = |position: usize| {
                 classes.iter().any(|class| {
@@ -185,8 +191,19 @@ impl<const N: usize> ElementBlock for Block<N> {
         self.classes.len()
     }
 
+    fn bytes(&self) -> usize {
+        let numbers = |class: &Constants| class.values.len() + class.mass.len() + class.weight.len();
+        size_of_val(self.vectors.as_slice())
+            + size_of_val(self.class_of.as_slice())
+            + size_of::<f64>() * self.classes.iter().map(numbers).sum::<usize>()
+    }
+
     fn derivative(&self, orders: [usize; 2], point: [f64; 2]) -> Vec<f64> {
         self.tables.derivative(orders, point).to_vec()
+    }
+
+    fn operations(&self) -> Operations {
+        Operations::count(&self.tables, &self.couplings)
     }
 
     fn damping(&self) -> Damping {
@@ -247,6 +264,7 @@ impl<const N: usize> WithSimd for Task<'_, N> {
         // Shares of the geometric and of the material stiffness.
         let geometric = if at.start.is_some() { 0.5 } else { 1.0 };
         let material = geometric + factor * rate;
+        let order = Transpose::new(simd);
         let mut constants_of = [u32::MAX; MAX_LANES];
         for begin in (0..count).step_by(S::F64_LANES) {
             // Lanes beyond the last element repeat it; what they give is not stored.
@@ -274,10 +292,17 @@ impl<const N: usize> WithSimd for Task<'_, N> {
             }
 
             let current = gather(simd, &block.vectors, members, at.q);
-            let start = at.start.map(|q| gather(simd, &block.vectors, members, q));
+            let [mut start, mut velocity, mut previous] = [const { None }; 3];
+            if let Some(q) = at.start {
+                start = Some(gather(simd, &block.vectors, members, q));
+            }
             let motion = at.motion.filter(|_| block.flows(at));
-            let velocity = motion.map(|motion| gather(simd, &block.vectors, members, motion.velocity));
-            let previous = want.and_then(|w| w.previous).map(|p| gather(simd, &block.vectors, members, p));
+            if let Some(motion) = motion {
+                velocity = Some(gather(simd, &block.vectors, members, motion.velocity));
+            }
+            if let Some(q) = want.and_then(|want| want.previous) {
+                previous = Some(gather(simd, &block.vectors, members, q));
+            }
             let mut totals = Totals::<S, N>::new(simd);
             if let Some(combined) = &mut combined {
                 combined.clear(simd);
@@ -287,10 +312,10 @@ impl<const N: usize> WithSimd for Task<'_, N> {
                 tables: &block.tables,
                 couplings: &block.couplings,
                 constants: &constants,
-                current: &current,
-                previous: previous.as_ref(),
-                start: start.as_ref(),
-                flow: velocity.as_ref().map(|velocity| Flow { velocity, factor, rate }),
+                current: &current.0,
+                previous: previous.as_ref().map(|vectors| &vectors.0),
+                start: start.as_ref().map(|vectors| &vectors.0),
+                flow: velocity.as_ref().map(|Aligned(velocity)| Flow { velocity, factor, rate }),
                 geometric: geometric / material,
             };
             batch.evaluate(&mut totals, combined.as_mut());
@@ -311,24 +336,25 @@ impl<const N: usize> WithSimd for Task<'_, N> {
                 }
             }
             let forces = distribute_all(&totals.force);
-            store(forces.as_flattened(), 0, 3 * N, &mut force[begin * 3 * N..(begin + lanes) * 3 * N]);
+            order.store(forces.as_flattened(), 0, 3 * N, &mut force[begin * 3 * N..(begin + lanes) * 3 * N]);
             if let (Some(want), Some(combined)) = (want, &mut combined) {
                 to_corners(&mut combined.blocks);
                 let size = 9 * N * (N + 1) / 2;
-                let stiffness = want.stiffness * material;
+                let target = &mut tangent[begin * size..(begin + lanes) * size];
+                let stiffness = Lanes::splat(simd, want.stiffness * material);
                 let inertia = want.mass + want.stiffness * mass_damping * rate;
-                for (b, column) in combined.blocks.iter_mut().enumerate() {
-                    let column = &mut column[..=b];
-                    for (a, block) in column.iter_mut().enumerate() {
+                for b in 0..N {
+                    for a in 0..=b {
+                        let mut block = combined.blocks[b][a];
+                        let inertia = mass[packed(a, b)] * inertia;
                         for i in 0..3 {
                             for j in 0..3 {
                                 block[i][j] = block[i][j] * stiffness;
                             }
-                            block[i][i] = mass[packed(a, b)].scale_add(inertia, block[i][i]);
+                            block[i][i] = block[i][i] + inertia;
                         }
+                        order.store(block.as_flattened(), 9 * packed(a, b), size, target);
                     }
-                    let target = &mut tangent[begin * size..(begin + lanes) * size];
-                    store(column.as_flattened().as_flattened(), 9 * packed(0, b), size, target);
                 }
             }
         }
@@ -337,14 +363,28 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 
 /// The nodal vectors of several elements in lanes, as sums and differences over the corners.
 #[inline(always)]
-fn gather<S: Simd, const N: usize>(simd: S, vectors: &[[u32; N]], members: &[usize], q: &[f64]) -> [Vector<S>; N] {
+fn gather<S: Simd, const N: usize>(
+    simd: S,
+    vectors: &[[u32; N]],
+    members: &[usize],
+    q: &[f64],
+) -> Aligned<[Vector<S>; N]> {
+    let mut numbers = [[[0.0; MAX_LANES]; 3]; N];
+    for (lane, &member) in members.iter().enumerate() {
+        for a in 0..N {
+            let vector = &q[3 * vectors[member][a] as usize..][..3];
+            for i in 0..3 {
+                numbers[a][i][lane] = vector[i];
+            }
+        }
+    }
     let mut lanes = [[Lanes::splat(simd, 0.0); 3]; N];
     for a in 0..N {
         for i in 0..3 {
-            lanes[a][i] = Lanes::from_fn(simd, |lane| q[3 * vectors[members[lane]][a] as usize + i]);
+            lanes[a][i] = Lanes::from_array(simd, &numbers[a][i]);
         }
     }
-    combine_all(&lanes)
+    Aligned(combine_all(&lanes))
 }
 
 /// Turns the tangent of the sums and differences over the corners, `blocks[b][a]` for `a <= b`, into that of the nodal
@@ -383,17 +423,6 @@ fn to_corners<S: Simd, const N: usize>(blocks: &mut [[strain::Block<S>; N]; N]) 
                     }
                 }
             }
-        }
-    }
-}
-
-/// Stores numbers of several elements, which have `size` numbers each, from `first` on.
-#[inline(always)]
-fn store<S: Simd>(numbers: &[Lanes<S>], first: usize, size: usize, target: &mut [f64]) {
-    for (i, number) in numbers.iter().enumerate() {
-        let values = number.to_array();
-        for (lane, element) in target.chunks_exact_mut(size).enumerate() {
-            element[first + i] = values[lane];
         }
     }
 }

@@ -72,8 +72,8 @@ fn tolerance<const N: usize>(tables: &Tables<N>, constants: &Constants, thicknes
         rest = others;
         match group {
             Group::Projected(samples, projection) => {
-                let (strains, matrix) = values.split_at(samples.tables.len() * COMPONENTS);
-                tolerance.extend(strains.chunks(COMPONENTS).flat_map(stretched));
+                let (points, matrix) = values.split_at(samples.tables.len() * point_constants(COMPONENTS));
+                extend_points(&mut tolerance, points, COMPONENTS, |strain| stretched(strain).to_vec());
                 extend_packed(&mut tolerance, matrix, projection.modes.len());
             }
             Group::Membrane(_) => {
@@ -98,8 +98,7 @@ fn metric<const N: usize>(tables: &Tables<N>, constants: &Constants) -> [f64; CO
     let mut start = 0;
     for group in &tables.groups {
         match group {
-            Group::Projected(..) => return stretched(&constants.values[start..]),
-            Group::Membrane(_) => return stretched(&constants.values[start + 1..]),
+            Group::Projected(..) | Group::Membrane(_) => return stretched(&constants.values[start + 1..]),
             Group::Bending(..) | Group::Solid(_) => start += group.constants(),
         }
     }

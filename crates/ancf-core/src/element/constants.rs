@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use pulp::{Scalar, Simd};
 
-use crate::lanes::{Lanes, Vector};
+use crate::lanes::{Lanes, MAX_LANES, Vector};
 use crate::material::Material;
 use crate::strain::{Curvature, GreenLagrange, Measure, Metric, packed};
 
@@ -12,9 +12,8 @@ use super::tables::{Group, Samples, Tables};
 
 /// The numbers of one class of congruent elements, in the order in which the kernel reads them.
 ///
-/// For each group of samples that are weighted point by point: the reference area (or volume) stretch, the reference strain
-/// (C) and the weight (C x C) of each point. For a group with generalised strains: the reference strain of each
-/// point, then the packed matrix of the weights of the generalised strains.
+/// For each group of samples: the reference area (or volume) stretch, the reference strain (C) and the weight (C x C) of
+/// each point, then, if it has generalised strains, the packed matrix of their weights.
 #[derive(Clone, Debug)]
 pub(crate) struct Constants {
     pub values: Vec<f64>,
@@ -49,8 +48,6 @@ impl Constants {
         let Section { material, thickness } = section;
         let membrane = thickness;
         let bending = thickness.powi(3) / 12.0;
-        let projected = tables.groups.iter().any(|group| matches!(group, Group::Projected(..)));
-        let share = if projected { sampled_share(tables, reference, thickness) } else { 1.0 };
         let vectors = &combine_all(reference);
         let surface = |gradients: &[Vector3<f64>]| plane_stress(material, &gradients[0], &gradients[1]);
         let mut values = Vec::new();
@@ -58,13 +55,14 @@ impl Constants {
             match group {
                 Group::Membrane(samples) => {
                     for point in points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)) {
-                        point.append(share * membrane, &mut values);
+                        point.append(membrane, &mut values);
                     }
                 }
                 Group::Projected(samples, projection) => {
+                    let share = sampled_share(tables, reference, thickness);
                     let points: Vec<_> =
                         points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)).collect();
-                    values.extend(points.iter().flat_map(|point| point.strain));
+                    points.iter().for_each(|point| point.append(share * membrane, &mut values));
                     for (l, second) in projection.modes.iter().enumerate() {
                         for first in &projection.modes[..=l] {
                             let entry = first.basis.iter().map(|&(g, phi)| {
@@ -192,7 +190,11 @@ pub(crate) fn to_lanes<S: Simd>(
         }
     } else {
         for i in 0..numbers(first).len() {
-            lanes.push(Lanes::from_fn(simd, |lane| numbers(classes[lane])[i]));
+            let mut values = [0.0; MAX_LANES];
+            for (value, class) in values.iter_mut().zip(classes) {
+                *value = numbers(class)[i];
+            }
+            lanes.push(Lanes::from_array(simd, &values));
         }
     }
 }

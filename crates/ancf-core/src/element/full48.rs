@@ -39,13 +39,17 @@ pub(crate) fn hermite_middle(sides: [f64; 2]) -> [Polynomial; 16] {
     array::from_fn(|a| if a % 4 == 3 { Polynomial::constant(0.0) } else { functions[a] })
 }
 
+/// The shape functions of the vector through the thickness: bilinear for `r_z`, zero for the others.
+pub(crate) fn director() -> [Polynomial; 16] {
+    let corners = bilinear();
+    array::from_fn(|a| if a % 4 == 3 { corners[a / 4] } else { Polynomial::constant(0.0) })
+}
+
 /// The tables for a middle surface: `r = r_middle + z r_z`, `r_z` bilinear between the nodes.
 ///
 /// Strains are sampled at 4 x 4 x 2 Gauss points, the mass at 5 x 5 x 3.
 fn tables(middle: [Polynomial; 16], sides: [f64; 2], thickness: f64) -> Tables<16> {
-    let corners = bilinear();
-    let director: [Polynomial; 16] =
-        array::from_fn(|a| if a % 4 == 3 { corners[a / 4] } else { Polynomial::constant(0.0) });
+    let director = director();
     let at = |orders: [usize; 2], point: [f64; 2], z: f64| {
         let along = derivative(&director, sides, orders, point);
         let mut row = derivative(&middle, sides, orders, point);
@@ -68,5 +72,5 @@ fn tables(middle: [Polynomial; 16], sides: [f64; 2], thickness: f64) -> Tables<1
         (shape, weight)
     });
     let mass = mass.collect();
-    Tables { sides, functions: middle, groups: vec![Group::Solid(Samples::new(rows, weights))], mass }
+    Tables { sides, functions: middle, groups: vec![Group::Solid(Samples::new(Rule::Gauss(4), rows, weights))], mass }
 }

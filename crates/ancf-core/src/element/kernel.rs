@@ -4,12 +4,13 @@
 
 use pulp::Simd;
 
-use crate::lanes::{Lanes, Vector, table_axpy};
-use crate::strain::{Block, Curvature, GreenLagrange, Measure, Metric};
+use crate::lanes::{Aligned, Lanes, Vector};
+use crate::strain::{Block, Curvature, Form, GreenLagrange, Measure, Metric};
 
 use super::constants::Couplings;
+use super::patch::Patch;
 use super::projected;
-use super::tables::{Group, Patch, Samples, Tables};
+use super::tables::{Group, Samples, Tables};
 
 /// A batch of elements that share their tables.
 pub(crate) struct Batch<'a, S: Simd, const N: usize> {
@@ -41,6 +42,7 @@ pub(crate) struct Flow<'a, S: Simd, const N: usize> {
 }
 
 /// What a strain sample is in the state of a batch.
+#[derive(Clone, Copy)]
 pub(super) struct Sample<S: Simd, const D: usize, const C: usize> {
     /// The gradient vectors on which forces act: those of the mean state for mean forces.
     pub gradients: [Vector<S>; D],
@@ -56,31 +58,30 @@ pub(super) struct Sample<S: Simd, const D: usize, const C: usize> {
 }
 
 /// What a batch gives; each part is added to.
+#[repr(C, align(64))]
 pub(crate) struct Totals<S: Simd, const N: usize> {
+    /// Force on each vector.
+    pub force: [Vector<S>; N],
     /// Membrane and bending energy; that of a solid counts as the first.
     pub energy: [Lanes<S>; 2],
     /// Power of a unit viscosity, and the energy that mean forces miss.
     pub rates: [Lanes<S>; 2],
-    /// Force on each vector.
-    pub force: [Vector<S>; N],
 }
 
 /// The tangent of a batch, which is added to.
+#[repr(C, align(64))]
 pub(crate) struct Tangent<S: Simd, const N: usize> {
     /// `blocks[b][a]` for the vectors `a <= b`.
     pub blocks: [[Block<S>; N]; N],
-    /// Stiffness of some samples with respect to their gradient vectors.
-    forms: [Block<S>; AT_ONCE * MOST],
-    /// The same with respect to their gradient vectors and one of the vectors.
-    columns: [Block<S>; AT_ONCE],
+    /// Stiffness of the points of a patch with respect to their gradient vectors.
+    pub(super) forms: [Block<S>; MOST_PAIRS],
 }
 
-/// Gradient vectors whose stiffness is kept at a time: what fits the first-level cache, and enough to make up for loading
-/// and storing each block of the tangent once for them all.
-pub(super) const AT_ONCE: usize = 16;
+/// The most gradient vectors of a patch: two at 4 x 4 points, three for a solid.
+pub(super) const MOST_GRADIENTS: usize = 48;
 
-/// The most gradient vectors that a strain measure depends on.
-const MOST: usize = 5;
+/// The most pairs of gradient vectors at the points of a patch: 15 for the curvature at 3 x 3 points.
+const MOST_PAIRS: usize = 135;
 
 impl<S: Simd, const N: usize> Totals<S, N> {
     /// Zeros.
@@ -96,7 +97,7 @@ impl<S: Simd, const N: usize> Tangent<S, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let none = [[Lanes::splat(simd, 0.0); 3]; 3];
-        Self { blocks: [[none; N]; N], forms: [none; AT_ONCE * MOST], columns: [none; AT_ONCE] }
+        Self { blocks: [[none; N]; N], forms: [none; MOST_PAIRS] }
     }
 
     /// Back to zeros.
@@ -144,49 +145,71 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
         totals: &mut Totals<S, N>,
         mut tangent: Option<&mut Tangent<S, N>>,
     ) {
-        let zero = Lanes::splat(self.simd, 0.0);
-        let stride = point_constants(C);
-        let groups = samples.tables.chunks(AT_ONCE / D).zip(constants.chunks(AT_ONCE / D * stride));
-        for (patch, (tables, constants)) in samples.patches.iter().zip(groups) {
-            let mut forces = [[zero; 3]; AT_ONCE];
-            for (g, constants) in constants.chunks(stride).enumerate() {
-                let area = constants[0];
-                let mut reference = [zero; C];
-                let mut weight = [[zero; C]; C];
-                for c in 0..C {
-                    reference[c] = constants[1 + c];
-                    for other in 0..C {
-                        weight[c][other] = constants[1 + C + c * C + other];
-                    }
-                }
-
-                let with_tangent = tangent.is_some();
-                let sample = self.sample::<M, D, C>(patch, g, law, area, reference, with_tangent);
-                let measure = M::new(law, sample.gradients, area);
-                let mut stress = times(&weight, sample.strain);
-                for c in 0..C {
-                    totals.energy[part] = (stress[c] * 0.5).mul_add(sample.strain[c], totals.energy[part]);
-                }
-                if let Some(flow) = self.flow {
-                    let viscous = times(&weight, sample.rate);
-                    totals.add_rates(&stress, &viscous, &sample.rate, &sample.missed);
-                    for c in 0..C {
-                        stress[c] = viscous[c].scale_add(flow.factor, stress[c]);
-                    }
-                }
-                forces[g * D..(g + 1) * D].copy_from_slice(&measure.forces(stress));
-
-                if let Some(tangent) = &mut tangent {
-                    let stress = sample.extrapolated.map_or(stress, |strain| times(&weight, strain));
-                    let stress = stress.map(|s| s * self.geometric);
-                    measure.stiffness(&weight, stress, &mut tangent.forms[g * D * D..(g + 1) * D * D]);
-                }
+        let mut constants = constants.chunks_exact(point_constants(C));
+        for patch in &samples.patches {
+            let mut forces = Aligned([[Lanes::splat(self.simd, 0.0); 3]; MOST_GRADIENTS]);
+            for (g, constants) in constants.by_ref().take(patch.points).enumerate() {
+                let sample = self.sample::<M, D, C>(patch, g, law, constants, tangent.is_some());
+                let form = tangent.as_deref_mut().map(|tangent| Form::new(&mut tangent.forms, patch.points, g));
+                let force = self.point::<M, D, C>(&sample, law, constants, None, part, totals, form);
+                forces.0[g * D..(g + 1) * D].copy_from_slice(&force);
             }
-            patch.add_forces(&forces, &mut totals.force);
-            if let Some(tangent) = &mut tangent {
-                patch.add_forms(zero, tables, tangent);
+            patch.add_forces(&forces.0, &mut totals.force);
+            if let Some(Tangent { forms, blocks }) = tangent.as_deref_mut() {
+                patch.moments.add(&mut forms[..D * (D + 1) / 2 * patch.points], blocks);
             }
         }
+    }
+
+    /// Adds the energy of a sample, gives the forces on its gradient vectors and sets its stiffness; `added` is stress that
+    /// comes from elsewhere, for the forces and for the geometric stiffness.
+    #[inline(always)]
+    pub fn point<M: Measure<S, D, C>, const D: usize, const C: usize>(
+        &self,
+        sample: &Sample<S, D, C>,
+        law: M::Law,
+        constants: &[Lanes<S>],
+        added: Option<[[Lanes<S>; C]; 2]>,
+        part: usize,
+        totals: &mut Totals<S, N>,
+        form: Option<Form<'_, S>>,
+    ) -> [Vector<S>; D] {
+        let weights = &constants[1 + C..];
+        let mut weight = [[constants[0]; C]; C];
+        for c in 0..C {
+            weight[c].copy_from_slice(&weights[c * C..(c + 1) * C]);
+        }
+        let measure = M::new(law, sample.gradients, constants[0]);
+        let mut stress = times(&weight, sample.strain);
+        for c in 0..C {
+            totals.energy[part] = (stress[c] * 0.5).mul_add(sample.strain[c], totals.energy[part]);
+        }
+        if let Some(flow) = self.flow {
+            let viscous = times(&weight, sample.rate);
+            totals.add_rates(&stress, &viscous, &sample.rate, &sample.missed);
+            for c in 0..C {
+                stress[c] = viscous[c].scale_add(flow.factor, stress[c]);
+            }
+        }
+        if let Some(form) = form {
+            let mut stress = match sample.extrapolated {
+                Some(strain) => times(&weight, strain),
+                None => stress,
+            };
+            for c in 0..C {
+                if let Some([_, added]) = added {
+                    stress[c] = stress[c] + added[c];
+                }
+                stress[c] = stress[c] * self.geometric;
+            }
+            measure.stiffness(&weight, stress, form);
+        }
+        if let Some([added, _]) = added {
+            for c in 0..C {
+                stress[c] = stress[c] + added[c];
+            }
+        }
+        measure.forces(stress)
     }
 
     /// A sample at a point of a patch.
@@ -196,17 +219,20 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
         patch: &Patch<N>,
         point: usize,
         law: M::Law,
-        area: Lanes<S>,
-        reference: [Lanes<S>; C],
+        constants: &[Lanes<S>],
         with_tangent: bool,
     ) -> Sample<S, D, C> {
         let zero = Lanes::splat(self.simd, 0.0);
+        let area = constants[0];
+        let mut reference = [zero; C];
+        reference.copy_from_slice(&constants[1..1 + C]);
         let mut gradients = patch.gradients::<S, D>(point, self.current);
         let mut strain = M::new(law, gradients, area).strain();
-        let mut extrapolated = self.previous.filter(|_| with_tangent).map(|previous| {
+        let mut extrapolated = None;
+        if let (Some(previous), true) = (self.previous, with_tangent) {
             let before = patch.gradients::<S, D>(point, previous);
-            extrapolated::<S, M, D, C>(law, area, gradients, before)
-        });
+            extrapolated = Some(self::extrapolated::<S, M, D, C>(law, area, gradients, before));
+        }
         let (mut rate, mut missed) = ([zero; C], [zero; C]);
         if let Some(start) = self.start {
             let first = patch.gradients::<S, D>(point, start);
@@ -216,10 +242,14 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
             let first = M::new(law, first, area).strain();
             missed = difference(strain, first);
             strain = mean(strain, first);
-            extrapolated = extrapolated.map(|extrapolated| mean(extrapolated, first));
+            if let Some(extrapolated) = &mut extrapolated {
+                *extrapolated = mean(*extrapolated, first);
+            }
         }
         strain = difference(strain, reference);
-        extrapolated = extrapolated.map(|extrapolated| difference(extrapolated, reference));
+        if let Some(extrapolated) = &mut extrapolated {
+            *extrapolated = difference(*extrapolated, reference);
+        }
         if let Some(flow) = self.flow {
             rate = M::new(law, gradients, area).change(&patch.gradients::<S, D>(point, flow.velocity));
             for c in 0..C {
@@ -282,79 +312,6 @@ fn extrapolated<S: Simd, M: Measure<S, D, C>, const D: usize, const C: usize>(
         strain[c] = strain[c] + change[c];
     }
     strain
-}
-
-impl<const N: usize> Patch<N> {
-    /// The gradient vectors at a point.
-    #[inline(always)]
-    pub fn gradients<S: Simd, const D: usize>(&self, point: usize, vectors: &[Vector<S>; N]) -> [Vector<S>; D] {
-        let zero = vectors[0][0].like(0.0);
-        let mut gradients = [[zero; 3]; D];
-        for d in 0..D {
-            gradients[d] = combination(zero, &self.gradients[point * D + d], vectors);
-        }
-        gradients
-    }
-
-    /// Adds the forces on the vectors that the forces on the gradient vectors make.
-    #[inline(always)]
-    pub fn add_forces<S: Simd>(&self, forces: &[Vector<S>], totals: &mut [Vector<S>; N]) {
-        for a in 0..N {
-            let force = combination(totals[a][0].like(0.0), &self.functions[a], forces);
-            for i in 0..3 {
-                totals[a][i] = totals[a][i] + force[i];
-            }
-        }
-    }
-
-    /// Adds the stiffness of the points, `sum_de table_d,a form_de table_e,b`.
-    #[inline(always)]
-    fn add_forms<S: Simd, const D: usize>(
-        &self,
-        zero: Lanes<S>,
-        tables: &[[[f64; N]; D]],
-        Tangent { blocks, forms, columns }: &mut Tangent<S, N>,
-    ) {
-        for b in 0..N {
-            for (table, (form, columns)) in tables.iter().zip(forms.chunks(D * D).zip(columns.chunks_mut(D))) {
-                for d in 0..D {
-                    let mut sum = [[zero; 3]; 3];
-                    for e in 0..D {
-                        let factor = table[e][b];
-                        if factor != 0.0 {
-                            let block = &form[if d <= e { d * D + e } else { e * D + d }];
-                            for i in 0..3 {
-                                for j in 0..3 {
-                                    let entry = if d <= e { block[i][j] } else { block[j][i] };
-                                    sum[i][j] = entry.scale_add(factor, sum[i][j]);
-                                }
-                            }
-                        }
-                    }
-                    columns[d] = sum;
-                }
-            }
-            for a in 0..=b {
-                let mut sum = blocks[b][a];
-                for &(gradient, factor) in &self.functions[a] {
-                    for i in 0..3 {
-                        sum[i] = table_axpy(factor, columns[gradient][i], sum[i]);
-                    }
-                }
-                blocks[b][a] = sum;
-            }
-        }
-    }
-}
-
-/// `sum factor_i vectors_i` over the entries `(i, factor_i)`.
-#[inline(always)]
-pub(super) fn combination<S: Simd>(zero: Lanes<S>, entries: &[(usize, f64)], vectors: &[Vector<S>]) -> Vector<S> {
-    let mut sum = [zero; 3];
-    for &(i, factor) in entries {
-        sum = table_axpy(factor, vectors[i], sum);
-    }
-    sum
 }
 
 /// `weight strain`.

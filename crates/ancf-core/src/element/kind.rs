@@ -2,12 +2,12 @@
 
 use crate::error::InputError;
 use crate::mesh::SurfacePoint;
-use crate::shape::{acm, hermite};
+use crate::shape::{acm, bilinear, hermite};
 use crate::strain::CurvatureLaw;
 
 use super::block::{Block, ElementBlock};
 use super::constants::Section;
-use super::full48::{full48a, full48b, hermite_middle, quartic_middle};
+use super::full48::{director, full48a, full48b, hermite_middle, quartic_middle};
 use super::tables::{Tables, derivative};
 use super::thin::{Membrane, thin36, thin48};
 
@@ -69,6 +69,31 @@ impl Kind {
             Self::Full48a => derivative(&quartic_middle(sides), sides, orders, at).to_vec(),
             Self::Full48b => derivative(&hermite_middle(sides), sides, orders, at).to_vec(),
         }
+    }
+
+    /// The shape functions of the vector that a moment about an edge turns, at a point `(xi, eta)` of the edge; `across`
+    /// is the parameter that is constant there.
+    ///
+    /// It is what the nodal vectors of the edge itself tell: the gradient across it, and in a solid `r_z`, which
+    /// tractions do work on that are linear over the thickness. Of `thin36` that is the linear part of the gradient.
+    /// The rest depends on the far nodes and is the same on opposite edges of an element, so that constant moments
+    /// inside do no work on it; if those on the edge did, plates would bend too far.
+    pub(crate) fn edge_director(self, sides: [f64; 2], across: usize, at: [f64; 2]) -> Vec<f64> {
+        let turned = match self {
+            Self::Thin48 => return self.shape_functions(sides, if across == 0 { [1, 0] } else { [0, 1] }, at),
+            Self::Thin36 => 1 + across,
+            Self::Full48a | Self::Full48b => 3,
+        };
+        let mut table = vec![0.0; 4 * self.nodal_vectors().len()];
+        let corners = derivative(&bilinear(), sides, [0, 0], at);
+        table.iter_mut().skip(turned).step_by(self.nodal_vectors().len()).zip(corners).for_each(|(t, n)| *t = n);
+        table
+    }
+
+    /// The derivatives of the shape functions of a solid's vector through the thickness, as
+    /// [`shape_functions`](Self::shape_functions).
+    pub(crate) fn director_functions(self, sides: [f64; 2], orders: [usize; 2], at: [f64; 2]) -> Vec<f64> {
+        derivative(&director(), sides, orders, at).to_vec()
     }
 
     /// The variant of the element, the default where nothing is given.

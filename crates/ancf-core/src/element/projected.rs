@@ -3,18 +3,16 @@
 use pulp::Simd;
 
 use crate::lanes::{Lanes, Vector, axpy};
-use crate::strain::{Measure, Metric, packed};
+use crate::strain::{Form, Metric};
 
 use super::constants::Couplings;
-use super::kernel::{AT_ONCE, Batch, Tangent, Totals, combination};
+use super::kernel::{Batch, MOST_GRADIENTS, Tangent, Totals, point_constants};
+use super::patch::combination;
 use super::projection::{MODES, POINTS, Projection, Row};
 use super::tables::Samples;
 
 /// Number of strain components.
 const C: usize = 3;
-
-/// Number of sample points of a patch.
-const PATCH: usize = AT_ONCE / 2;
 
 /// Adds energy, force and, if it is wanted, the tangent.
 #[inline(always)]
@@ -27,74 +25,77 @@ pub(super) fn add<S: Simd, const N: usize>(
     tangent: Option<&mut Tangent<S, N>>,
 ) {
     let zero = Lanes::splat(batch.simd, 0.0);
-    let (references, weights) = constants.split_at(POINTS * C);
-    let reference = |g: usize| [references[g * C], references[g * C + 1], references[g * C + 2]];
+    let patch = &samples.patches[0];
+    let (constants, weights) = constants.split_at(POINTS * point_constants(C));
+    let mut constants_of = [&constants[..0]; POINTS];
+    for (part, constants) in constants_of.iter_mut().zip(constants.chunks_exact(point_constants(C))) {
+        *part = constants;
+    }
 
-    let mut vectors = [[zero; 3]; 2 * POINTS];
     let [mut strain, mut rate, mut missed, mut extrapolated] = [[[zero; C]; POINTS]; 4];
     let with_tangent = tangent.is_some();
+    let mut at = [batch.sample::<Metric<S>, 2, C>(patch, 0, (), constants_of[0], with_tangent); POINTS];
     for g in 0..POINTS {
-        let patch = &samples.patches[g / PATCH];
-        let sample = batch.sample::<Metric<S>, 2, C>(patch, g % PATCH, (), zero, reference(g), with_tangent);
-        [vectors[2 * g], vectors[2 * g + 1]] = sample.gradients;
-        (strain[g], rate[g], missed[g]) = (sample.strain, sample.rate, sample.missed);
-        extrapolated[g] = sample.extrapolated.unwrap_or(strain[g]);
+        if g > 0 {
+            at[g] = batch.sample::<Metric<S>, 2, C>(patch, g, (), constants_of[g], with_tangent);
+        }
+        (strain[g], rate[g], missed[g]) = (at[g].strain, at[g].rate, at[g].missed);
+        extrapolated[g] = at[g].extrapolated.unwrap_or(strain[g]);
     }
-    let amplitudes = |strain: &[[Lanes<S>; C]; POINTS]| self::amplitudes(zero, projection, strain);
-    let conjugates = |amplitudes: &[Lanes<S>; MODES]| conjugates(zero, batch.couplings, weights, amplitudes);
-    let strain = amplitudes(&strain);
-    let mut stress = conjugates(&strain);
+    let couplings = batch.couplings;
+    let strain = amplitudes(zero, projection, &strain);
+    let mut stress = conjugates(zero, couplings, weights, &strain);
     for k in 0..MODES {
         totals.energy[0] = (stress[k] * 0.5).mul_add(strain[k], totals.energy[0]);
     }
     if let Some(flow) = batch.flow {
-        let rate = amplitudes(&rate);
-        let viscous = conjugates(&rate);
-        totals.add_rates(&stress, &viscous, &rate, &amplitudes(&missed));
+        let rate = amplitudes(zero, projection, &rate);
+        let viscous = conjugates(zero, couplings, weights, &rate);
+        totals.add_rates(&stress, &viscous, &rate, &amplitudes(zero, projection, &missed));
         for k in 0..MODES {
             stress[k] = viscous[k].scale_add(flow.factor, stress[k]);
         }
     }
 
-    let mut at_points = [[zero; C]; POINTS];
-    for (conjugate, mode) in stress.iter().zip(&projection.modes) {
-        for &(g, weight) in &mode.basis {
-            at_points[g][mode.component] = conjugate.scale_add(weight, at_points[g][mode.component]);
-        }
+    let on_points = at_points(zero, projection, &stress);
+    let mut geometric = on_points;
+    if with_tangent && batch.previous.is_some() {
+        let strain = amplitudes(zero, projection, &extrapolated);
+        geometric = at_points(zero, projection, &conjugates(zero, couplings, weights, &strain));
     }
-    let mut forces = [[zero; 3]; 2 * POINTS];
+    let mut forces = [[zero; 3]; MOST_GRADIENTS];
+    let mut tangent = tangent;
     for g in 0..POINTS {
-        let measure = Metric::new((), [vectors[2 * g], vectors[2 * g + 1]], zero);
-        [forces[2 * g], forces[2 * g + 1]] = measure.forces(at_points[g]);
+        let form = tangent.as_deref_mut().map(|tangent| Form::new(&mut tangent.forms, POINTS, g));
+        let added = Some([on_points[g], geometric[g]]);
+        let force = batch.point::<Metric<S>, 2, C>(&at[g], (), constants_of[g], added, 0, totals, form);
+        forces[2 * g..2 * g + 2].copy_from_slice(&force);
     }
-    for (patch, forces) in samples.patches.iter().zip(forces.chunks(AT_ONCE)) {
-        patch.add_forces(forces, &mut totals.force);
-    }
-
+    patch.add_forces(&forces, &mut totals.force);
     if let Some(tangent) = tangent {
-        if batch.previous.is_some() {
-            stress = conjugates(&amplitudes(&extrapolated));
+        patch.moments.add(&mut tangent.forms[..3 * POINTS], &mut tangent.blocks);
+        let mut vectors = [[zero; 3]; 2 * POINTS];
+        for g in 0..POINTS {
+            vectors[2 * g..2 * g + 2].copy_from_slice(&at[g].gradients);
         }
-        let stress = stress.map(|s| s * batch.geometric);
-        add_tangent(zero, projection, batch.couplings, weights, &vectors, &stress, tangent);
+        add_material(zero, projection, couplings, weights, &vectors, tangent);
     }
 }
 
-/// Adds `sum_kl row_k^T W_kl row_l` and the second derivatives times their stress.
+/// Adds the material stiffness `sum_kl row_k^T W_kl row_l`.
 #[inline(always)]
-fn add_tangent<S: Simd, const N: usize>(
+fn add_material<S: Simd, const N: usize>(
     zero: Lanes<S>,
     projection: &Projection<N>,
     couplings: &Couplings,
     weights: &[Lanes<S>],
     vectors: &[Vector<S>; 2 * POINTS],
-    stress: &[Lanes<S>; MODES],
     tangent: &mut Tangent<S, N>,
 ) {
     let mut rows = [[[zero; 3]; MODES]; N];
     for b in 0..N {
         for row in &projection.rows[b] {
-            rows[b][row.mode] = combination(zero, &row.gradients, vectors);
+            rows[b][row.mode] = combination([zero; 3], &row.gradients, vectors);
         }
         let mut weighted = [[zero; 3]; MODES];
         for (target, couplings) in weighted.iter_mut().zip(couplings) {
@@ -110,13 +111,6 @@ fn add_tangent<S: Simd, const N: usize>(
                 for i in 0..3 {
                     sum[i] = axpy(rows[a][mode][i], weighted[mode], sum[i]);
                 }
-            }
-            let mut geometric = zero;
-            for &(mode, factor) in &projection.second[packed(a, b)] {
-                geometric = stress[mode].scale_add(factor, geometric);
-            }
-            for i in 0..3 {
-                sum[i][i] = sum[i][i] + geometric;
             }
             tangent.blocks[b][a] = sum;
         }
@@ -158,4 +152,20 @@ fn conjugates<S: Simd>(
         *conjugate = sum;
     }
     conjugates
+}
+
+/// The stresses at the sample points.
+#[inline(always)]
+fn at_points<S: Simd, const N: usize>(
+    zero: Lanes<S>,
+    projection: &Projection<N>,
+    stress: &[Lanes<S>; MODES],
+) -> [[Lanes<S>; C]; POINTS] {
+    let mut at_points = [[zero; C]; POINTS];
+    for (stress, mode) in stress.iter().zip(&projection.modes) {
+        for &(g, weight) in &mode.basis {
+            at_points[g][mode.component] = stress.scale_add(weight, at_points[g][mode.component]);
+        }
+    }
+    at_points
 }

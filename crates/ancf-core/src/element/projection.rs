@@ -4,7 +4,6 @@
 //! projection, component by component, on spaces that the element can control removes the locking.
 
 use crate::quadrature::Rule;
-use crate::strain::packed;
 
 use super::tables::Samples;
 
@@ -33,15 +32,13 @@ pub(crate) struct Row {
 
 /// Generalised strains `e_k = sum_g w_g phi_k(g) eps(g)`; the projected strain is `sum_k phi_k e_k`.
 ///
-/// They are quadratic in the vectors `q_a`: `de_k = sum_a row_k,a . dq_a`, and the second derivative is a multiple of the
-/// identity for each pair of vectors.
+/// They are quadratic in the vectors `q_a`: `de_k = sum_a row_k,a . dq_a`. Their second derivatives are those of the samples,
+/// so their stress enters the geometric stiffness at the points.
 #[derive(Clone, Debug)]
 pub(crate) struct Projection<const N: usize> {
     pub modes: Vec<Mode>,
     /// For each vector the rows of the modes that depend on it.
     pub rows: [Vec<Row>; N],
-    /// Second derivatives, packed: for each pair of vectors the modes that depend on both, with the factor.
-    pub second: Vec<Vec<(usize, f64)>>,
 }
 
 impl<const N: usize> Projection<N> {
@@ -94,27 +91,6 @@ impl<const N: usize> Projection<N> {
             };
             modes.iter().enumerate().map(row).filter(|row| !row.gradients.is_empty()).collect()
         });
-        let mut second = vec![Vec::new(); N * (N + 1) / 2];
-        for b in 0..N {
-            for a in 0..=b {
-                let factor = |mode: &Mode| {
-                    let terms = mode.basis.iter().map(|&(g, weight)| {
-                        let [x, y] = &samples.tables[g];
-                        let product = match mode.component {
-                            0 => x[a] * x[b],
-                            1 => y[a] * y[b],
-                            _ => x[a] * y[b] + y[a] * x[b],
-                        };
-                        [weight * product, (weight * product).abs()]
-                    });
-                    let [sum, size] = terms.fold([0.0, 0.0], |[s, m], [t, u]| [s + t, m + u]);
-                    // Zero by symmetry but for rounding.
-                    if sum.abs() < 1e-13 * size { 0.0 } else { sum }
-                };
-                let factors = modes.iter().map(factor).enumerate();
-                second[packed(a, b)] = factors.filter(|(_, factor)| *factor != 0.0).collect();
-            }
-        }
-        Self { modes, rows, second }
+        Self { modes, rows }
     }
 }

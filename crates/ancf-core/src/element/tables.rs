@@ -1,10 +1,12 @@
 //! What all elements with the same sides in their parameters share.
 
+use crate::quadrature::Rule;
 use crate::shape::Polynomial;
 use crate::strain::{CurvatureLaw, SOLID_PAIRS};
 
 use super::constants::COMPONENTS;
-use super::kernel::{AT_ONCE, point_constants};
+use super::kernel::point_constants;
+use super::patch::Patch;
 use super::projection::{MODES, Projection};
 
 /// Strain samples of one measure: the points, their shape tables, and how the samples are weighted.
@@ -15,45 +17,28 @@ pub(crate) struct Samples<const N: usize, const D: usize> {
     pub tables: Vec<[[f64; N]; D]>,
     /// Quadrature weight of each point over the parameter rectangle.
     pub weights: Vec<f64>,
-    /// The entries of the tables that are not zero, for some points at a time.
+    /// The points as squares, one after the other.
     pub patches: Vec<Patch<N>>,
 }
 
-/// What is not zero in the tables of consecutive points, whose gradient vectors are numbered through.
-#[derive(Clone, Debug)]
-pub(crate) struct Patch<const N: usize> {
-    /// For each gradient vector the functions it consists of, with their values.
-    pub gradients: Vec<Vec<(usize, f64)>>,
-    /// For each function the gradient vectors it is part of, with its values.
-    pub functions: [Vec<(usize, f64)>; N],
-}
-
 impl<const N: usize, const D: usize> Samples<N, D> {
-    /// Samples with the given tables and quadrature weights.
-    pub fn new(tables: Vec<[[f64; N]; D]>, weights: Vec<f64>) -> Self {
-        let patches = tables.chunks(AT_ONCE / D).map(Patch::new).collect();
+    /// Samples with the given tables and quadrature weights at the square of the points of a rule, or at several such
+    /// squares on top of each other.
+    pub fn new(rule: Rule, tables: Vec<[[f64; N]; D]>, weights: Vec<f64>) -> Self {
+        let points: Vec<f64> = rule.points().into_iter().map(|(x, _)| x).collect();
+        // With respect to two second derivatives, the stiffness of a curvature is a multiple of `n n^T`.
+        let symmetric = |d: usize, e: usize| d == e || d.min(e) >= 2 && D == 5;
+        let patches = tables.chunks(points.len().pow(2)).map(|tables| Patch::new(tables, &points, symmetric)).collect();
         Self { tables, weights, patches }
-    }
-}
-
-impl<const N: usize> Patch<N> {
-    fn new<const D: usize>(tables: &[[[f64; N]; D]]) -> Self {
-        let rows = tables.as_flattened();
-        let not_zero =
-            |entries: &mut dyn Iterator<Item = f64>| entries.enumerate().filter(|(_, t)| *t != 0.0).collect();
-        Self {
-            gradients: rows.iter().map(|row| not_zero(&mut row.iter().copied())).collect(),
-            functions: std::array::from_fn(|a| not_zero(&mut rows.iter().map(|row| row[a]))),
-        }
     }
 }
 
 /// A group of samples with its strain measure.
 #[derive(Clone, Debug)]
 pub(crate) enum Group<const N: usize> {
-    /// Membrane strain of a surface, with its whole energy or, beside a projected group, a share of it.
+    /// Membrane strain of a surface.
     Membrane(Samples<N, 2>),
-    /// Membrane strain of a surface by generalised strains.
+    /// Membrane strain of a surface, with its energy by generalised strains and a share of it by the samples.
     Projected(Samples<N, 2>, Projection<N>),
     /// Curvature of a surface.
     Bending(Samples<N, 5>, CurvatureLaw),
@@ -66,7 +51,7 @@ impl<const N: usize> Group<N> {
     pub fn constants(&self) -> usize {
         match self {
             Self::Membrane(samples) => samples.tables.len() * point_constants(COMPONENTS),
-            Self::Projected(samples, _) => samples.tables.len() * COMPONENTS + MODES * (MODES + 1) / 2,
+            Self::Projected(samples, _) => samples.tables.len() * point_constants(COMPONENTS) + MODES * (MODES + 1) / 2,
             Self::Bending(samples, _) => samples.tables.len() * point_constants(COMPONENTS),
             Self::Solid(samples) => samples.tables.len() * point_constants(SOLID_PAIRS.len()),
         }

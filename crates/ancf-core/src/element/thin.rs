@@ -34,7 +34,7 @@ impl Membrane {
     }
 
     /// The rules for membrane strain and curvature.
-    fn rules(self) -> (Rule, Rule) {
+    pub(crate) fn rules(self) -> (Rule, Rule) {
         match self {
             Self::Projected | Self::Full => (Rule::Gauss(4), Rule::Gauss(3)),
             Self::Lobatto => (Rule::Lobatto3, Rule::Gauss(2)),
@@ -69,19 +69,16 @@ fn tables<const N: usize>(
     let (membrane_rule, bending_rule) = membrane.rules();
     let area = sides[0] * sides[1];
     let at = |orders: [usize; 2], point: [f64; 2]| derivative(&functions, sides, orders, point);
-    let membrane_samples = |rule| samples(area, rule, |p| [[1, 0], [0, 1]].map(|d| at(d, p)));
-    let mut groups = vec![Group::Bending(
-        samples(area, bending_rule, |p| [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|d| at(d, p))),
-        curvature,
-    )];
-    if membrane == Membrane::Projected {
-        let samples = membrane_samples(membrane_rule);
-        let projection = Projection::membrane(&samples);
-        groups.push(Group::Projected(samples, projection));
-        groups.push(Group::Membrane(membrane_samples(membrane_rule)));
-    } else {
-        groups.push(Group::Membrane(membrane_samples(membrane_rule)));
-    }
+    let bent = samples(area, bending_rule, |p| [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|d| at(d, p)));
+    let stretched = samples(area, membrane_rule, |p| [[1, 0], [0, 1]].map(|d| at(d, p)));
+    let stretched = match membrane {
+        Membrane::Projected => {
+            let projection = Projection::membrane(&stretched);
+            Group::Projected(stretched, projection)
+        }
+        Membrane::Full | Membrane::Lobatto => Group::Membrane(stretched),
+    };
+    let groups = vec![Group::Bending(bent, curvature), stretched];
     let mass = Rule::Gauss(5).square().into_iter().map(|(point, weight)| {
         (Derivatives { value: at([0, 0], point), x: at([1, 0], point), y: at([0, 1], point), z: None }, weight * area)
     });
@@ -96,5 +93,5 @@ fn samples<const N: usize, const D: usize>(
 ) -> Samples<N, D> {
     let points = rule.square().into_iter();
     let (tables, weights) = points.map(|(p, weight)| (table(p).map(|row| functions(&row)), weight * area)).unzip();
-    Samples::new(tables, weights)
+    Samples::new(rule, tables, weights)
 }

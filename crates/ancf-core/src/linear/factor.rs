@@ -1,21 +1,15 @@
 //! Factorisation L D L^T of a symmetric sparse matrix and solution of linear systems with it.
 
+use std::ops::Range;
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
-use faer::linalg::cholesky::ldlt::factor::LdltError;
-use faer::sparse::SparseColMatRef;
-use faer::sparse::linalg::cholesky::supernodal::{
-    SupernodalLdltRef, factorize_supernodal_numeric_ldlt, factorize_supernodal_numeric_ldlt_scratch,
-};
-use faer::{Conj, MatMut, Par};
+use faer::MatMut;
+use rayon::prelude::*;
 
-use super::symbolic::Symbolic;
+use super::front::{eliminate, extend_add};
+use super::solve::Solution;
+use super::tree::{Front, Tree};
 use super::{LinearError, Pattern};
-
-/// faer's threads work inside one dense block at a time. The blocks of a plate are too small for that: up to 150 000
-/// coordinates four threads take 1.3 to 5 times as long as one, which also gives the same bits for any thread count.
-const PARALLELISM: Par = Par::Seq;
 
 /// Signs of the pivots, which by Sylvester's law are those of the eigenvalues.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,15 +28,19 @@ impl Inertia {
 
 /// Factorisation K = L D L^T with D diagonal: made once for a pattern, refilled for each tangent.
 ///
-/// The pivots are taken in the order of the coordinates, so renumber by [`order`](super::order) first. Without
-/// exchanges the factorisation costs as much as Cholesky's and takes definite and indefinite tangents alike. Definite
-/// matrices need none. For indefinite ones it can lose digits where a pivot happens to be small;
-/// [`SymmetricMatrix::residual`](super::SymmetricMatrix::residual) tells, and one step of refinement restores them.
+/// The pivots are taken in the order of the coordinates, up to exchanges of such that do not depend on each other, so
+/// renumber by [`order`](super::order) first. Without pivoting the factorisation costs as much as Cholesky's and takes
+/// definite and indefinite tangents alike. Definite matrices need no pivoting. For indefinite ones it can lose digits
+/// where a pivot happens to be small; [`SymmetricMatrix::residual`](super::SymmetricMatrix::residual) tells, and one
+/// step of refinement restores them.
+///
+/// Parts of the mesh that do not touch are eliminated in parallel, and so are tiles of the large dense matrices that
+/// join them. What is added to what, and in which order, does not depend on the number of threads.
 ///
 /// # Source
 ///
-/// Golub and Van Loan, Matrix Computations (2013), 4.1 and 4.2; Wriggers, Nonlinear Finite Element Methods (2008),
-/// for the count of negative pivots as a test of stability.
+/// Golub and Van Loan, Matrix Computations (2013), 4.1 and 4.2; Duff and Reid (1983) for the multifrontal method;
+/// Wriggers, Nonlinear Finite Element Methods (2008), for the count of negative pivots as a test of stability.
 ///
 /// # Examples
 ///
@@ -61,12 +59,17 @@ impl Inertia {
 /// ```
 pub struct Factorization {
     pattern: Arc<Pattern>,
-    symbolic: Symbolic,
+    tree: Tree,
     factor: Vec<f64>,
-    memory: MemBuffer,
-    columns: usize,
+    updates: Vec<f64>,
+    solution: Solution,
     valid: bool,
 }
+
+/// Fronts of the top with more operations than this share their tiles among threads.
+const SHARED: f64 = 1e7;
+/// Columns of a front that one task adds updates to.
+const CHUNK: usize = 32;
 
 impl Factorization {
     /// Analyses the pattern and allocates the factor and all working memory.
@@ -75,15 +78,15 @@ impl Factorization {
     ///
     /// [`LinearError::TooLarge`] when the memory does not suffice.
     pub fn new(pattern: Arc<Pattern>) -> Result<Self, LinearError> {
-        let symbolic = Symbolic::new(&pattern)?;
-        let too_large = LinearError::TooLarge { n: pattern.n() };
-        let length = symbolic.supernodes.len_val();
-        let mut factor = Vec::new();
-        factor.try_reserve_exact(length).map_err(|_| too_large)?;
-        factor.resize(length, 0.0);
-        let scratch = Self::scratch(&symbolic, 1);
-        let memory = MemBuffer::try_new(scratch).map_err(|_| too_large)?;
-        Ok(Self { pattern, symbolic, factor, memory, columns: 1, valid: false })
+        let tree = Tree::new(&pattern)?;
+        let zeros = |length: usize| {
+            let mut numbers = Vec::new();
+            numbers.try_reserve_exact(length).map_err(|_| LinearError::TooLarge { n: pattern.n() })?;
+            numbers.resize(length, 0.0);
+            Ok(numbers)
+        };
+        let (factor, updates) = (zeros(tree.size())?, zeros(tree.workspace)?);
+        Ok(Self { pattern, tree, factor, updates, solution: Solution::default(), valid: false })
     }
 
     /// The pattern the values must have.
@@ -98,7 +101,7 @@ impl Factorization {
         self.factor.len()
     }
 
-    /// Factorises the matrix with these values, (nnz) in the order of the pattern; allocates nothing.
+    /// Factorises the matrix with these values, (nnz) in the order of the pattern, in memory that is there.
     ///
     /// # Errors
     ///
@@ -111,43 +114,56 @@ impl Factorization {
     ///
     /// When there is not one value for each entry of the pattern.
     pub fn factorize(&mut self, values: &[f64]) -> Result<Inertia, LinearError> {
+        assert_eq!(values.len(), self.pattern.nnz(), "one value an entry");
         self.valid = false;
         if let Some(place) = values.iter().position(|value| !value.is_finite()) {
             let column = self.pattern.col_ptr().partition_point(|&start| start <= place) - 1;
             return Err(LinearError::NotFinite { column });
         }
-        let result = factorize_supernodal_numeric_ldlt(
-            &mut self.factor,
-            SparseColMatRef::new(self.pattern.lower(), values),
-            Default::default(),
-            &self.symbolic.supernodes,
-            PARALLELISM,
-            MemStack::new(&mut self.memory),
-            Default::default(),
-        );
-        // faer stops at pivots that are exactly zero or have overflowed; those below rounding are found here
-        let stopped_at = result.err().map(|LdltError::ZeroPivot { index }| index);
-        let mut negative = 0;
-        let rounding = self.pattern.n() as f64 * f64::EPSILON;
-        for (column, pivot) in self.pivots().enumerate() {
-            let scale = values[self.pattern.col_ptr()[column]].abs();
-            if stopped_at == Some(column) || pivot.abs() <= rounding * scale {
-                return Err(LinearError::Singular { column, pivot, scale });
+        let Self { pattern, tree, factor, updates, .. } = self;
+        let work = Work { pattern, tree, values };
+
+        let mut tasks = Vec::with_capacity(tree.regions.len());
+        let (mut factors, mut memory) = (factor.as_mut_slice(), updates.as_mut_slice());
+        for (fronts, region) in tree.subtrees.windows(2).zip(tree.regions.windows(2)) {
+            let size: usize = tree.fronts[fronts[0]..fronts[1]].iter().map(Front::size).sum();
+            let (own, rest) = factors.split_at_mut(size);
+            let (updates, others) = memory.split_at_mut(region[1] - region[0]);
+            tasks.push((fronts[0]..fronts[1], own, region[0], updates));
+            (factors, memory) = (rest, others);
+        }
+        let subtree = |(fronts, factor, begin, updates): (Range<usize>, &mut [f64], usize, &mut [f64])| {
+            let mut rest = factor;
+            let mut negative = 0;
+            for f in fronts {
+                let (panel, others) = rest.split_at_mut(tree.fronts[f].size());
+                negative += work.front(f, panel, updates, begin, false)?;
+                rest = others;
             }
-            negative += usize::from(pivot < 0.0);
+            Ok(negative)
+        };
+        let outcomes: Vec<Result<usize, LinearError>> = if tasks.len() < 2 {
+            tasks.into_iter().map(subtree).collect()
+        } else {
+            tasks.into_par_iter().map(subtree).collect()
+        };
+        let mut negative = outcomes.into_iter().sum::<Result<usize, _>>()?;
+        for f in tree.top() {
+            let (panel, others) = factors.split_at_mut(tree.fronts[f].size());
+            negative += work.front(f, panel, updates, 0, tree.fronts[f].work() > SHARED)?;
+            factors = others;
         }
         self.valid = true;
         Ok(Inertia { negative })
     }
 
-    /// Replaces the right-hand side, (n), by the solution; allocates nothing.
+    /// Replaces the right-hand side, (n), by the solution.
     ///
     /// # Panics
     ///
     /// When the last [`factorize`](Self::factorize) did not succeed, or the length is wrong.
     pub fn solve(&mut self, rhs: &mut [f64]) {
-        let n = self.pattern.n();
-        self.solve_in_place(MatMut::from_column_major_slice_mut(rhs, n, 1));
+        self.solve_many(rhs, 1);
     }
 
     /// Solves for `count` interleaved right-hand sides, (n, count): a scalar mass matrix with vectors in R3.
@@ -156,44 +172,98 @@ impl Factorization {
     ///
     /// As [`solve`](Self::solve).
     pub fn solve_many(&mut self, rhs: &mut [f64], count: usize) {
-        let n = self.pattern.n();
-        if count > self.columns {
-            self.memory = MemBuffer::new(Self::scratch(&self.symbolic, count));
-            self.columns = count;
-        }
-        self.solve_in_place(MatMut::from_row_major_slice_mut(rhs, n, count));
-    }
-
-    fn solve_in_place(&mut self, rhs: MatMut<'_, f64>) {
         assert!(self.valid, "solve without a successful factorisation");
-        SupernodalLdltRef::new(&self.symbolic.supernodes, &self.factor).solve_in_place_with_conj(
-            Conj::No,
-            rhs,
-            PARALLELISM,
-            MemStack::new(&mut self.memory),
-        );
+        assert_eq!(rhs.len(), self.pattern.n() * count, "one number for each column and right-hand side");
+        self.solution.solve(&self.tree, &self.factor, rhs, count);
     }
+}
 
-    /// Working memory for a factorisation and for a solution with this many right-hand sides.
-    fn scratch(symbolic: &Symbolic, columns: usize) -> StackReq {
-        let supernodes = &symbolic.supernodes;
-        factorize_supernodal_numeric_ldlt_scratch::<usize, f64>(supernodes, PARALLELISM, Default::default())
-            .or(supernodes.solve_in_place_scratch::<f64>(columns, PARALLELISM))
-    }
+/// What the elimination of a front reads.
+struct Work<'a> {
+    pattern: &'a Pattern,
+    tree: &'a Tree,
+    values: &'a [f64],
+}
 
-    /// Diagonal of D.
-    fn pivots(&self) -> impl Iterator<Item = f64> {
-        let factor = SupernodalLdltRef::new(&self.symbolic.supernodes, &self.factor);
-        (0..self.symbolic.supernodes.n_supernodes())
-            .map(move |s| factor.supernode(s).val())
-            .flat_map(|block| (0..block.ncols()).map(move |j| block[(j, j)]))
+impl Work<'_> {
+    /// Assembles and eliminates a front; `updates` is the working memory from `begin` on. Returns the number of its
+    /// negative pivots.
+    fn front(
+        &self,
+        f: usize,
+        panel: &mut [f64],
+        updates: &mut [f64],
+        begin: usize,
+        shared: bool,
+    ) -> Result<usize, LinearError> {
+        let tree = self.tree;
+        let front = &tree.fronts[f];
+        let (rows, columns, below) = (front.rows(), front.columns.len(), front.below);
+        let (before, rest) = updates.split_at_mut(front.update - begin);
+        let (own, after) = rest.split_at_mut(front.workspace());
+        let (update, scratch) = own.split_at_mut(below * below);
+        let children = || {
+            tree.children[front.children.clone()].iter().map(|&child| {
+                let child = &tree.fronts[child];
+                let memory = match child.update < front.update {
+                    true => &before[child.update - begin..],
+                    false => &after[child.update - front.update - front.workspace()..],
+                };
+                (&memory[..child.below * child.below], &tree.runs[child.runs.clone()])
+            })
+        };
+
+        panel.fill(0.0);
+        for run in &tree.entries[front.entries.clone()] {
+            let length = run.length as usize;
+            panel[run.to as usize..][..length].copy_from_slice(&self.values[run.from as usize..][..length]);
+        }
+        let add = |target: &mut [f64], top: usize, columns: Range<usize>| {
+            let height = rows - top;
+            let part = |(k, target): (usize, &mut [f64])| {
+                let first = columns.start + k * CHUNK;
+                for (child, runs) in children() {
+                    extend_add(target, top, first..first + target.len() / height, child, runs);
+                }
+            };
+            if shared {
+                target.par_chunks_mut(CHUNK * height).enumerate().for_each(part);
+            } else if height > 0 {
+                target.chunks_mut(CHUNK * height).enumerate().for_each(part);
+            }
+        };
+        add(panel, 0, 0..columns);
+        let stopped_at = eliminate(
+            MatMut::from_column_major_slice_mut(panel, rows, columns),
+            MatMut::from_column_major_slice_mut(update, below, below),
+            scratch,
+            shared,
+        )
+        .err();
+
+        // pivots that are exactly zero or have overflowed stop the elimination; those below rounding are found here
+        let rounding = self.pattern.n() as f64 * f64::EPSILON;
+        let mut negative = 0;
+        for k in 0..columns {
+            let column = tree.order[front.columns.start + k];
+            let pivot = panel[k * rows + k];
+            let scale = self.values[self.pattern.col_ptr()[column]].abs();
+            if stopped_at == Some(k) || pivot.abs() <= rounding * scale {
+                return Err(LinearError::Singular { column, pivot, scale });
+            }
+            negative += usize::from(pivot < 0.0);
+        }
+        if below > 0 {
+            add(update, columns, columns..rows);
+        }
+        Ok(negative)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::SymmetricMatrix;
     use super::super::testing::{dense, random_matrix, random_vector};
+    use super::super::{SymmetricMatrix, order};
     use super::*;
     use nalgebra::{DMatrix, DVector};
 
@@ -325,6 +395,99 @@ mod tests {
         let before = solve(&mut factorization);
         factorization.factorize(second.values()).unwrap();
         assert_eq!(solve(&mut factorization), before);
+    }
+
+    /// Plate of side x side nodes with nine coordinates each, in the order of elimination: random, and diagonally
+    /// dominant with the given signs.
+    fn plate(side: usize, sign: impl Fn(usize) -> f64) -> SymmetricMatrix {
+        let node = |i: usize, j: usize| j * side + i;
+        let cells = (0..(side - 1) * (side - 1)).map(|cell| (cell % (side - 1), cell / (side - 1)));
+        let cells: Vec<_> =
+            cells.map(|(i, j)| [node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]).collect();
+        let positions: Vec<_> = (0..side * side).map(|k| [(k % side) as f64, (k / side) as f64]).collect();
+        let order = order(&Pattern::from_groups(side * side, &cells).unwrap(), Some(&positions)).unwrap();
+        let mut place = vec![0; order.len()];
+        order.iter().enumerate().for_each(|(k, &node)| place[node] = k);
+        let groups: Vec<Vec<usize>> =
+            cells.iter().map(|cell| cell.iter().flat_map(|&n| 9 * place[n]..9 * place[n] + 9).collect()).collect();
+        let pattern = Arc::new(Pattern::from_groups(9 * side * side, &groups).unwrap());
+        let values = random_vector(pattern.nnz(), 9);
+        let mut sums = vec![0.0; pattern.n()];
+        for column in 0..pattern.n() {
+            for (&row, value) in pattern.rows(column)[1..].iter().zip(&values[pattern.col_ptr()[column] + 1..]) {
+                sums[row] += value.abs();
+                sums[column] += value.abs();
+            }
+        }
+        let mut matrix = SymmetricMatrix::new(Arc::clone(&pattern), values);
+        for (column, sum) in sums.iter().enumerate() {
+            matrix.values_mut()[pattern.col_ptr()[column]] = 1.01 * sign(column) * sum;
+        }
+        matrix
+    }
+
+    #[test]
+    fn large_systems_have_the_same_bits_on_any_number_of_threads() {
+        // by Gershgorin's theorem there are as many negative eigenvalues as negative diagonal entries
+        let matrix = plate(30, |column| if column % 10 == 3 { -1.0 } else { 1.0 });
+        let n = matrix.pattern().n();
+        let rhs = random_vector(3 * n, 2);
+        let solve = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let (mut factorization, inertia) = factorized(&matrix);
+                assert_eq!(inertia.negative, n / 10);
+                let tree = &factorization.tree;
+                assert!(tree.subtrees.len() > 4 && tree.fronts[tree.top()].iter().any(|front| front.work() > SHARED));
+                let mut x = rhs.clone();
+                factorization.solve_many(&mut x, 3);
+                x
+            })
+        };
+        let one = solve(1);
+        for component in 0..3 {
+            let part = |x: &[f64]| x.iter().skip(component).step_by(3).copied().collect::<Vec<_>>();
+            assert!(matrix.residual(&part(&one), &part(&rhs), &mut vec![0.0; n]) < 1e-14);
+        }
+        for threads in [2, 3] {
+            assert!(solve(threads).iter().zip(&one).all(|(a, b)| a.to_bits() == b.to_bits()), "{threads} threads");
+        }
+    }
+
+    #[test]
+    fn a_large_singular_system_is_refused_at_its_last_column() {
+        // springs between all nodes of a plate that nothing holds
+        let mut matrix = plate(30, |_| 0.0);
+        let pattern = Arc::clone(matrix.pattern());
+        for column in 0..pattern.n() {
+            for place in pattern.col_ptr()[column] + 1..pattern.col_ptr()[column + 1] {
+                let stiffness = matrix.values()[place].abs();
+                matrix.values_mut()[place] = -stiffness;
+                for end in [column, pattern.row_idx()[place]] {
+                    matrix.values_mut()[pattern.col_ptr()[end]] += stiffness;
+                }
+            }
+        }
+        let refused = Factorization::new(Arc::clone(&pattern)).unwrap().factorize(matrix.values());
+        assert!(
+            matches!(refused, Err(LinearError::Singular { column, .. }) if column == pattern.n() - 1),
+            "{refused:?}"
+        );
+    }
+
+    #[test]
+    fn long_chains_are_solved_too() {
+        // -u'' = 1 in differences: exact at the nodes
+        let n = 20_000;
+        let pattern = Arc::new(Pattern::from_groups(n, &(0..n - 1).map(|k| [k, k + 1]).collect::<Vec<_>>()).unwrap());
+        let values = (0..n).flat_map(|k| [2.0, -1.0].into_iter().take(pattern.rows(k).len())).collect();
+        let (mut factorization, _) = factorized(&SymmetricMatrix::new(pattern, values));
+        let mut u = vec![1.0; n];
+        factorization.solve(&mut u);
+        for (k, u) in u.iter().enumerate() {
+            let expected = 0.5 * (k + 1) as f64 * (n - k) as f64;
+            assert!((u / expected - 1.0).abs() < 1e-8, "{k}: {u} instead of {expected}");
+        }
     }
 
     #[test]

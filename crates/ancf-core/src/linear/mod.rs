@@ -6,13 +6,15 @@
 
 mod error;
 mod factor;
+mod front;
 mod gmres;
 mod ordering;
 mod pattern;
+mod solve;
 mod sparse;
-mod symbolic;
 #[cfg(test)]
 mod testing;
+mod tree;
 
 pub use error::LinearError;
 pub use factor::{Factorization, Inertia};

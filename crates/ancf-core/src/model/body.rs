@@ -4,6 +4,7 @@ use crate::element::{ElementBlock, Kind, Membrane, NodalVector, Section, Variant
 use crate::error::InputError;
 use crate::material::Material;
 use crate::mesh::{Grid, Surface};
+use crate::quadrature::Rule;
 use crate::strain::CurvatureLaw;
 
 /// What a plate is made of and how it is modelled.
@@ -96,7 +97,7 @@ impl Body {
     }
 
     /// The elements, ready to be evaluated; `reference` are the nodal coordinates of the whole model at rest.
-    pub(crate) fn elements(&self, reference: &[f64]) -> Box<dyn ElementBlock> {
+    pub fn elements(&self, reference: &[f64]) -> Box<dyn ElementBlock> {
         let Plate { material, thickness, element, .. } = self.plate;
         let section = Section { material, thickness };
         let vectors = (0..self.grid.elements()).flat_map(|element| self.element_vectors(element));
@@ -107,6 +108,26 @@ impl Body {
     /// The variant of the curvature.
     pub(crate) fn curvature(&self) -> CurvatureLaw {
         self.variant.curvature
+    }
+
+    /// How the membrane strain of a thin element is sampled.
+    pub(crate) fn membrane(&self) -> Option<Membrane> {
+        (!self.plate.element.is_solid()).then_some(self.variant.membrane)
+    }
+
+    /// The points of an element at which its membrane strain and its curvature, or its strain, are sampled: relative to
+    /// its sides.
+    pub fn samples(&self) -> [Vec<[f64; 2]>; 2] {
+        let rules = self.membrane().map_or([Rule::Gauss(4); 2], |membrane| membrane.rules().into());
+        rules.map(|rule| rule.square().into_iter().map(|(at, _)| at).collect())
+    }
+
+    /// The shape functions of the vector through the thickness of a solid at a point of an element, and their first
+    /// derivatives.
+    pub(crate) fn director(&self, at: [f64; 2]) -> Option<[Vec<f64>; 3]> {
+        let sides = self.grid.element_sides();
+        let tables = [[0, 0], [1, 0], [0, 1]].map(|orders| self.plate.element.director_functions(sides, orders, at));
+        self.plate.element.is_solid().then_some(tables)
     }
 
     /// The nodal vectors of an element and its shape functions at a point of it: `N`, `N_x`, `N_y`, `N_xx`, `N_yy`,

@@ -37,7 +37,8 @@ pub enum LoadKind {
         per_length: [f64; 3],
     },
     /// A moment per reference length of an edge, N m/m, about the edge, following it. A positive one turns the
-    /// outward direction of the edge towards the normal `r_x x r_y`.
+    /// outward direction of the edge towards the normal `r_x x r_y`. It does work on what the edge's own nodes hold: the
+    /// gradient across the edge, in a solid `r_z`.
     Moment {
         /// The loaded body.
         body: BodyId,

@@ -209,6 +209,11 @@ impl Model {
         &self.moved
     }
 
+    /// The motions of supports.
+    pub(crate) fn motions(&self) -> &[SupportMotion] {
+        &self.motions
+    }
+
     /// Value, velocity and acceleration of a moved coordinate at time `t`.
     pub fn prescribed(&self, moved: &Moved, t: f64) -> [f64; 3] {
         let vector = moved.coordinate / 3 * 3;

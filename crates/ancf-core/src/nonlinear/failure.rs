@@ -76,6 +76,23 @@ pub enum Failure {
         /// The body.
         body: String,
     },
+    /// Not all modes that were wanted could be found.
+    #[error("{found} of {count} modes were found")]
+    ModesNotFound {
+        /// Those that were found.
+        found: usize,
+        /// Those that exist or were wanted.
+        count: usize,
+    },
+    /// Loads that follow the body have no potential there.
+    #[error(
+        "loads that follow the body have no potential in this state: they couple the modes by {coupling:.1e} of their \
+         squared frequencies"
+    )]
+    NoPotential {
+        /// The largest coupling, relative to the squared frequencies.
+        coupling: f64,
+    },
     /// Forces or states of an explicit step are not finite.
     #[error("the state became infinite or not a number in the step to t = {t:.6e} s")]
     Overflow {
@@ -133,6 +150,10 @@ impl Failure {
                 "the structure buckles or snaps here: a dynamic run with damping follows it; a small disturbing load shows the branch it takes"
             }
             Self::Massless { .. } => "a positive density, or kind = \"static\"",
+            Self::ModesNotFound { .. } => {
+                "fewer or more modes; a finer mesh, a thicker body: frequencies may be too far apart"
+            }
+            Self::NoPotential { .. } => "loads that keep their direction, or a dynamic run",
             Self::Overflow { .. } => "a smaller step, or an implicit method with error control (rtol)",
             Self::StepAboveLimit { .. } => {
                 "a step below the limit, error control (rtol), or an implicit method; force = true to see what happens"

@@ -48,11 +48,11 @@ impl Problem<'_> {
     }
 }
 
-/// Velocities as a function of the coordinates: `v = rate (q - still)`.
+/// Velocities as a function of the coordinates: `v = at_origin + rate (q - q*)`.
 #[derive(Clone, Copy, Debug)]
 pub struct Velocity<'a> {
     /// Derivative of the velocities, 1/s.
     pub rate: f64,
-    /// Coordinates at which the velocities vanish.
-    pub still: &'a [f64],
+    /// Velocities where the inertia force vanishes.
+    pub at_origin: &'a [f64],
 }

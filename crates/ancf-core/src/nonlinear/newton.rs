@@ -1,12 +1,19 @@
 //! Newton's method: plain, with mixed integration points, and modified.
 
 use crate::assembly::System;
+use crate::linear::gmres;
 use crate::observe::Observer;
 
 use super::convergence::Convergence;
 use super::forces::{Forces, Tangent};
 use super::scale::scales;
 use super::{Failure, Options, Problem, Variant};
+
+/// Accuracy of corrections with the part of a tangent that is not assembled, the most products for it, and the length of
+/// the differences that make them, relative to the size of the model.
+const TURNING_TOLERANCE: f64 = 1e-2;
+const TURNING_PRODUCTS: usize = 8;
+const DIFFERENCE: f64 = 1e-7;
 
 /// How a solution was found.
 #[derive(Clone, Copy, Debug)]
@@ -73,6 +80,12 @@ impl Newton {
         self.kept
     }
 
+    /// `q - q*` of the last solution, without what rounding of the coordinates `q` takes of it. With it inertia balances
+    /// the forces to rounding however far the body has moved.
+    pub(crate) fn from_origin(&self) -> &[f64] {
+        &self.forces.from_origin
+    }
+
     /// Makes the next solution use the factorisation that the system holds, or none.
     pub(crate) fn keep(&mut self, kept: Option<Kept>) {
         self.kept = kept;
@@ -127,8 +140,30 @@ impl Newton {
         self.iterate(system, *problem, Some(normal), q, last, observer)
     }
 
+    /// Iterates with the factorisation that is kept, if reuse is wanted; should that fail, without it.
     fn iterate(
         &mut self,
+        system: &mut System,
+        problem: Problem<'_>,
+        normal: Option<&[f64]>,
+        q: &mut [f64],
+        last: Option<&[f64]>,
+        observer: &dyn Observer,
+    ) -> Result<Report, Failure> {
+        let reuse = self.options.reuse;
+        match self.attempt(reuse, system, problem, normal, q, last, observer) {
+            Err(failure) if reuse && !matches!(failure, Failure::Stopped | Failure::TooLarge) => {
+                q.copy_from_slice(&self.begin);
+                self.attempt(false, system, problem, normal, q, last, observer)
+            }
+            end => end,
+        }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "those of `iterate`, and how")]
+    fn attempt(
+        &mut self,
+        mut reuse: bool,
         system: &mut System,
         mut problem: Problem<'_>,
         normal: Option<&[f64]>,
@@ -136,7 +171,7 @@ impl Newton {
         last: Option<&[f64]>,
         observer: &dyn Observer,
     ) -> Result<Report, Failure> {
-        let Options { variant, tolerance, max_iterations, reuse } = self.options;
+        let Options { variant, tolerance, max_iterations, .. } = self.options;
         let mip = variant == Variant::MixedIntegrationPoint;
         let mut extrapolate = false;
         if let (Some(last), true) = (last, mip) {
@@ -147,7 +182,7 @@ impl Newton {
         let begin = problem.t;
         let coefficients = problem.coefficients();
         self.kept = self.kept.filter(|kept| reuse && kept.coefficients == coefficients);
-        self.forces.begin();
+        self.forces.begin(&problem, q);
         let mut convergence = Convergence::new(tolerance);
         for iteration in 1..=max_iterations {
             if observer.stop() {
@@ -169,6 +204,9 @@ impl Newton {
             let mut size = f64::INFINITY;
             if finite {
                 system.solve(&self.forces.residual, &mut self.correction);
+                if problem.start.is_some() {
+                    self.bring_in_turning(system, &problem, q);
+                }
                 if let Some(normal) = normal {
                     problem.t += stay_in_plane(system, normal, q, problem.t, &mut self.correction);
                 }
@@ -178,18 +216,19 @@ impl Newton {
                 // The old factorisation leads away: back to the start with a new one.
                 q.copy_from_slice(&self.begin);
                 problem.t = begin;
-                (self.kept, extrapolate) = (None, false);
+                self.forces.begin(&problem, q);
+                (self.kept, extrapolate, reuse) = (None, false, false);
                 convergence.restart();
                 continue;
             }
-            let useful = fresh || convergence.contracts(size);
+            // One that did not serve shows that the solution is far: from here on each iteration has its own.
+            reuse &= fresh || convergence.contracts(size);
             let converged = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
             self.previous.copy_from_slice(q);
-            for (q, d) in q.iter_mut().zip(&self.correction) {
-                *q -= d;
-            }
+            self.forces.correct(&self.correction, q);
             extrapolate = mip;
-            self.kept = (reuse && useful).then_some(Kept { coefficients, negative });
+            let keep = reuse || converged && self.options.reuse;
+            self.kept = keep.then_some(Kept { coefficients, negative });
             if converged {
                 // The energy was evaluated one correction before the solution.
                 let energy = strain.total() - dot(&self.correction, &self.forces.internal);
@@ -198,6 +237,19 @@ impl Newton {
             }
         }
         Err(Failure::NotConverged { iterations: max_iterations, correction: convergence.size })
+    }
+
+    /// Corrects for what the assembled tangent of mean forces lacks: strains change along `B` at the end of the step, not at
+    /// its middle, `B_m^T W (B_1 - B_m) / 2`, which is not symmetric. The factorised tangent is the preconditioner.
+    fn bring_in_turning(&mut self, system: &mut System, problem: &Problem<'_>, q: &[f64]) {
+        let Self { forces, correction, scale, .. } = self;
+        let mut product = vec![0.0; q.len()];
+        let apply = |x: &[f64], y: &mut [f64]| {
+            let size = x.iter().zip(scale.iter()).map(|(x, s)| x.abs() / s).fold(0.0, f64::max);
+            forces.derivative(system, problem, [q, x], DIFFERENCE / size, &mut product);
+            system.solve(&product, y);
+        };
+        gmres(apply, correction, TURNING_TOLERANCE, TURNING_PRODUCTS);
     }
 }
 

@@ -94,6 +94,7 @@ pub(super) fn settle(
             }
         }
     }
+    path.forces += damped.forces();
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
     Ok(found)

@@ -51,8 +51,9 @@ pub(super) struct Path<'a> {
     pub rejected: usize,
     /// The load factor of the point that the observer was given last.
     pub told: Option<f64>,
-    /// Iterations and factorisations of jumps.
+    /// Iterations, evaluations and factorisations of jumps.
     pub iterations: usize,
+    pub forces: usize,
     pub factorizations: usize,
 }
 
@@ -76,6 +77,7 @@ impl<'a> Path<'a> {
             steps: 0,
             rejected: 0,
             iterations: 0,
+            forces: 0,
             factorizations: 0,
             told: None,
         }
@@ -134,8 +136,8 @@ impl<'a> Path<'a> {
     /// What the path has taken.
     pub fn counts(&self) -> Counts {
         let iterations = self.newton.iterations() + self.iterations;
-        let Self { steps, rejected, factorizations, .. } = *self;
-        Counts { steps, rejected, unsolved: rejected, iterations, factorizations, ..Counts::default() }
+        let Self { steps, rejected, forces, factorizations, .. } = *self;
+        Counts { steps, rejected, unsolved: rejected, iterations, forces, factorizations, ..Counts::default() }
     }
 
     /// Gives the last point to the observer, unless it has it.

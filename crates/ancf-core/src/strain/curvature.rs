@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::{Block, Measure, add_outer};
+use super::{Block, Form, Measure, add_outer};
 use crate::lanes::{Lanes, Vector, axpy, cross, dot, scale};
 
 /// How the curvature takes the stretch of the surface, `J = |n| / |N|`, into account.
@@ -70,6 +70,9 @@ impl<S: Simd> Curvature<S> {
 
 impl<S: Simd> Measure<S, 5, 3> for Curvature<S> {
     type Law = CurvatureLaw;
+    const FORCE: usize = 21 + 20 + 63;
+    // Normal and its derivatives, changes with it, weighted sums, their outer products with H, coupling to b_ab.
+    const STIFFNESS: usize = 100 + 108 + 108 + 159 + 162 + 58 + 3 * 59 + 6 * 22;
 
     #[inline(always)]
     fn new(law: CurvatureLaw, [x, y, xx, yy, xy]: [Vector<S>; 5], area: Lanes<S>) -> Self {
@@ -115,9 +118,7 @@ impl<S: Simd> Measure<S, 5, 3> for Curvature<S> {
     /// With `v` the weighted second derivatives, the energy `f v . n` of constant stress depends on the gradients through
     /// `n` and `v`, by `g = d(f v . n)/dn`, `H = dg/dn` and `F = d(f n)/dn`; `dn = dr_x x r_y + r_x x dr_y`.
     #[inline(always)]
-    fn stiffness(&self, weight: &[[Lanes<S>; 3]; 3], stress: [Lanes<S>; 3], form: &mut [Block<S>]) {
-        const D: usize = 5;
-
+    fn stiffness(&self, weight: &[[Lanes<S>; 3]; 3], stress: [Lanes<S>; 3], mut form: Form<'_, S>) {
         let (x, y, u) = (self.x, self.y, self.unit_normal);
         let v = self.weighted(stress);
         let along = dot(v, u);
@@ -171,9 +172,9 @@ impl<S: Simd> Measure<S, 5, 3> for Curvature<S> {
             yy = add_outer(by_y[c], weighted_y[c], yy);
             xy = add_outer(by_x[c], weighted_y[c], xy);
         }
-        form[0] = xx;
-        form[1] = xy;
-        form[D + 1] = yy;
+        form.set(0, 0, xx);
+        form.set(0, 1, xy);
+        form.set(1, 1, yy);
 
         let n = self.scaled_normal();
         let (y_f, x_f) = (turned(y, &f), turned(x, &f));
@@ -186,10 +187,10 @@ impl<S: Simd> Measure<S, 5, 3> for Curvature<S> {
                 on_x[i] = scale(moment, y_f[i]);
                 on_y[i] = scale(-moment, x_f[i]);
             }
-            form[2 + c] = add_outer(weighted_x[c], normal, on_x);
-            form[D + 2 + c] = add_outer(weighted_y[c], normal, on_y);
+            form.set(0, 2 + c, add_outer(weighted_x[c], normal, on_x));
+            form.set(1, 2 + c, add_outer(weighted_y[c], normal, on_y));
             for e in c..3 {
-                form[D * (2 + c) + 2 + e] = add_outer(normal, scale(weight[c][e] * twice[e], n), none);
+                form.set(2 + c, 2 + e, add_outer(normal, scale(weight[c][e] * twice[e], n), none));
             }
         }
     }

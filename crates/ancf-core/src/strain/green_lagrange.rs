@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::{Block, Measure, SOLID_PAIRS, add_outer};
+use super::{Form, Measure, SOLID_PAIRS, add_outer};
 use crate::lanes::{Lanes, Vector, axpy, dot, scale};
 
 /// The component of each pair of directions in [`SOLID_PAIRS`].
@@ -20,6 +20,8 @@ pub struct GreenLagrange<S: Simd> {
 
 impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
     type Law = ();
+    const FORCE: usize = 33 + 45;
+    const STIFFNESS: usize = 18 * (18 + 18);
 
     #[inline(always)]
     fn new((): (), gradients: [Vector<S>; 3], _stretch: Lanes<S>) -> Self {
@@ -28,24 +30,37 @@ impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
 
     #[inline(always)]
     fn strain(&self) -> [Lanes<S>; 6] {
-        SOLID_PAIRS.map(|(a, b)| dot(self.gradients[a], self.gradients[b]) * if a == b { 0.5 } else { 1.0 })
+        let r = &self.gradients;
+        let mut strain = [r[0][0]; 6];
+        for (c, (a, b)) in SOLID_PAIRS.into_iter().enumerate() {
+            strain[c] = dot(r[a], r[b]) * if a == b { 0.5 } else { 1.0 };
+        }
+        strain
     }
 
     #[inline(always)]
     fn change(&self, d: &[Vector<S>; 3]) -> [Lanes<S>; 6] {
         let r = &self.gradients;
-        SOLID_PAIRS.map(|(a, b)| if a == b { dot(r[a], d[a]) } else { dot(r[a], d[b]) + dot(r[b], d[a]) })
+        let mut change = [r[0][0]; 6];
+        for (c, (a, b)) in SOLID_PAIRS.into_iter().enumerate() {
+            change[c] = if a == b { dot(r[a], d[a]) } else { dot(r[a], d[b]) + dot(r[b], d[a]) };
+        }
+        change
     }
 
     #[inline(always)]
     fn forces(&self, stress: [Lanes<S>; 6]) -> [Vector<S>; 3] {
         let r = &self.gradients;
-        COMPONENT.map(|[x, y, z]| axpy(stress[x], r[0], axpy(stress[y], r[1], scale(stress[z], r[2]))))
+        let mut forces = *r;
+        for (d, [x, y, z]) in COMPONENT.into_iter().enumerate() {
+            forces[d] = axpy(stress[x], r[0], axpy(stress[y], r[1], scale(stress[z], r[2])));
+        }
+        forces
     }
 
     /// The strain `de` changes with the gradient `r_d` by `r_e`.
     #[inline(always)]
-    fn stiffness(&self, weight: &[[Lanes<S>; 6]; 6], stress: [Lanes<S>; 6], form: &mut [Block<S>]) {
+    fn stiffness(&self, weight: &[[Lanes<S>; 6]; 6], stress: [Lanes<S>; 6], mut form: Form<'_, S>) {
         let r = &self.gradients;
         let zero = stress[0].like(0.0);
         for d in 0..3 {
@@ -60,7 +75,7 @@ impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
                     }
                     block = add_outer(r[k], sum, block);
                 }
-                form[3 * d + e] = block;
+                form.set(d, e, block);
             }
         }
     }

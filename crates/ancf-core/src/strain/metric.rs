@@ -2,7 +2,7 @@
 
 use pulp::Simd;
 
-use super::{Block, Measure, add_outer};
+use super::{Block, Form, Measure, add_outer};
 use crate::lanes::{Lanes, Vector, axpy, dot, scale};
 
 /// `r_x . r_x / 2`, `r_y . r_y / 2` and `r_x . r_y` for the gradients `r_x`, `r_y`.
@@ -18,6 +18,8 @@ pub struct Metric<S: Simd> {
 
 impl<S: Simd> Measure<S, 2, 3> for Metric<S> {
     type Law = ();
+    const FORCE: usize = 17 + 18;
+    const STIFFNESS: usize = 6 * 9 + 6 * 18;
 
     #[inline(always)]
     fn new((): (), [x, y]: [Vector<S>; 2], _area: Lanes<S>) -> Self {
@@ -42,15 +44,15 @@ impl<S: Simd> Measure<S, 2, 3> for Metric<S> {
     /// The strains change with `r_x` by `(r_x, 0, r_y)` and with `r_y` by `(0, r_y, r_x)`; their second derivatives are
     /// multiples of the identity.
     #[inline(always)]
-    fn stiffness(&self, weight: &[[Lanes<S>; 3]; 3], stress: [Lanes<S>; 3], form: &mut [Block<S>]) {
+    fn stiffness(&self, weight: &[[Lanes<S>; 3]; 3], stress: [Lanes<S>; 3], mut form: Form<'_, S>) {
         let (x, y) = (self.x, self.y);
         let shear = mix(weight[2][2], x, weight[2][1], y);
         let [xx, yy, xy] = stress;
         let on_x = add_outer(y, mix(weight[2][0], x, weight[2][2], y), diagonal(xx));
         let on_y = add_outer(x, shear, diagonal(yy));
-        form[0] = add_outer(x, mix(weight[0][0], x, weight[0][2], y), on_x);
-        form[1] = add_outer(x, mix(weight[0][2], x, weight[0][1], y), add_outer(y, shear, diagonal(xy)));
-        form[3] = add_outer(y, mix(weight[1][2], x, weight[1][1], y), on_y);
+        form.set(0, 0, add_outer(x, mix(weight[0][0], x, weight[0][2], y), on_x));
+        form.set(0, 1, add_outer(x, mix(weight[0][2], x, weight[0][1], y), add_outer(y, shear, diagonal(xy))));
+        form.set(1, 1, add_outer(y, mix(weight[1][2], x, weight[1][1], y), on_y));
     }
 }
 

@@ -35,6 +35,13 @@ pub trait Measure<S: Simd, const D: usize, const C: usize>: Copy {
     /// What is fixed for all points and elements, such as the choice of a variant.
     type Law: Copy;
 
+    /// Floating-point operations of [`new`](Self::new), [`strain`](Self::strain) and [`forces`](Self::forces), a fused
+    /// multiply-add two.
+    const FORCE: usize;
+
+    /// The same of [`stiffness`](Self::stiffness).
+    const STIFFNESS: usize;
+
     /// Evaluates the measure for the given gradient vectors; `stretch` is that of the reference: the area
     /// `|R_x x R_y|` of a surface, the volume `|R_x x R_y . R_z|` of a solid for a unit of the parameters.
     fn new(law: Self::Law, gradients: [Vector<S>; D], stretch: Lanes<S>) -> Self;
@@ -49,8 +56,29 @@ pub trait Measure<S: Simd, const D: usize, const C: usize>: Copy {
     fn forces(&self, stress: [Lanes<S>; C]) -> [Vector<S>; D];
 
     /// The second derivative of `1/2 strain . weight strain` with respect to the gradient vectors, where `stress` stands
-    /// for `weight strain`: the block of the vectors `d <= e` goes to `form[d * D + e]`.
-    fn stiffness(&self, weight: &[[Lanes<S>; C]; C], stress: [Lanes<S>; C], form: &mut [Block<S>]);
+    /// for `weight strain`: a block for each pair of vectors `d <= e`.
+    fn stiffness(&self, weight: &[[Lanes<S>; C]; C], stress: [Lanes<S>; C], form: Form<'_, S>);
+}
+
+/// The stiffness of one of several points, kept pair by pair of gradient vectors, the points side by side.
+pub struct Form<'a, S: Simd> {
+    blocks: &'a mut [Block<S>],
+    points: usize,
+    point: usize,
+}
+
+impl<'a, S: Simd> Form<'a, S> {
+    /// The place for `point` in `blocks`, which are those of so many points.
+    #[inline(always)]
+    pub fn new(blocks: &'a mut [Block<S>], points: usize, point: usize) -> Self {
+        Self { blocks, points, point }
+    }
+
+    /// Sets the block of the gradient vectors `d <= e`.
+    #[inline(always)]
+    fn set(&mut self, d: usize, e: usize, block: Block<S>) {
+        self.blocks[packed(d, e) * self.points + self.point] = block;
+    }
 }
 
 /// `a b^T + block`.

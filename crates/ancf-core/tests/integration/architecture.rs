@@ -1,10 +1,13 @@
 //! What the sources may name.
 //!
 //! Reference: the layers that `lib.rs` describes.
-//! Goal: the linear algebra library stays behind `linear`, Python stays outside, dependencies point one way.
+//! Goal: the linear algebra library stays behind `linear`, Python stays outside, dependencies point one way, elements come
+//! whole.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use ancf_core::element::Kind;
 
 /// The modules from the lowest layer to the highest; each may name only those before it, or beside it.
 const LAYERS: [&[&str]; 9] = [
@@ -16,7 +19,7 @@ const LAYERS: [&[&str]; 9] = [
     &["evaluate", "observe"],
     &["nonlinear"],
     &["report"],
-    &["statics", "dynamics"],
+    &["statics", "dynamics", "modes"],
 ];
 
 /// All source files of the crate with their lines, comments left out.
@@ -82,6 +85,23 @@ fn dependencies_point_one_way() {
                     assert!(other <= level, "{} is below {named}: {line}", path.display());
                 }
             }
+        }
+    }
+}
+
+/// What CONTRIBUTING.md asks of an element, beside the suites that run over every `Kind`.
+#[test]
+fn elements_come_with_all_their_pieces() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for element in Kind::ALL.map(Kind::name) {
+        for (piece, mention) in [
+            ("python/ancf/bodies.py".to_owned(), format!("\"{element}\": (")),
+            ("python/ancf/reference/elements.py".to_owned(), format!("\"{element}\": (")),
+            ("benchmarks/convergence.py".to_owned(), format!("\"{element}\": (")),
+            (format!("docs/elements/{element}.md"), format!("# `{element}`")),
+        ] {
+            let text = fs::read_to_string(root.join(&piece)).unwrap_or_default();
+            assert!(text.contains(&mention), "{piece} lacks {mention}");
         }
     }
 }

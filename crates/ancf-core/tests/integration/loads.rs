@@ -4,12 +4,12 @@
 //! Goal: the same work on any mesh, with and without supports; forces and stiffness of followers by differences.
 //! Mesh: 1 x 1 to 4 x 3 elements.
 
-use nalgebra::Vector3;
+use nalgebra::{DVector, Vector3};
 
 use ancf_core::assembly::System;
-use ancf_core::element::{Membrane, NodalVector};
+use ancf_core::element::{Kind, Membrane, NodalVector};
 use ancf_core::evaluate::{MaterialPoint, Quantity};
-use ancf_core::model::{BodyId, Fix, LoadKind, Model};
+use ancf_core::model::{BodyId, Fix, LoadKind, Model, Plate};
 
 use crate::common::{
     GAUSS, Random, add_constant, add_ramp, derivative, dot, field, largest, line, monomial, moved, pin, plate,
@@ -164,12 +164,13 @@ fn edge_frame(system: &System, body: BodyId, edge: &str, at: [f64; 2], q: &[f64]
     [sign * along.normalize().cross(&normal), normal]
 }
 
-/// The moment does the work of the turn of its edge: of the conormal towards the normal.
+/// The moment does the work of the turn of its edge: of the conormal towards the normal, where the surface is smooth.
 #[test]
 fn moment_does_the_work_of_the_turn() {
     let per_length = 0.8;
     for edge in ["x0", "x1", "y0", "y1"] {
-        let (mut model, body) = soft([2, 2]);
+        let smooth = Plate { element: Kind::Thin48, ..plate(1e-3, 0.3, 50.0, 0.02, Membrane::Full) };
+        let (mut model, body) = rectangle(SIZE, [2, 2], smooth);
         let loaded = Model::edge_at(format!("edge:{edge}").parse().unwrap()).unwrap();
         add_constant(&mut model, LoadKind::Moment { body, edge: loaded, per_length });
         let system = system(model);
@@ -209,6 +210,43 @@ fn moment_does_the_work_of_the_turn() {
     }
 }
 
+/// Moments `M` on the edges across x and `M_y` on the others hold the cylinder `w = kappa x^2 / 2` exactly, to first
+/// order: `M = D kappa`, `M_y = nu M`. In a solid fibres keep their length, which makes it plane strain.
+#[test]
+fn constant_moments_hold_a_cylinder() {
+    let (young, poisson, thickness, kappa) = (1e3, 0.3, 0.02_f64, 1e-3);
+    for element in Kind::ALL {
+        let variant = Plate { element, membrane: None, ..plate(young, poisson, 50.0, thickness, Membrane::Full) };
+        let (mut model, body) = rectangle(SIZE, [3, 2], variant);
+        let ratio = if element.is_solid() { poisson / (1.0 - poisson) } else { poisson };
+        let shear = 0.5 * young / (1.0 + poisson);
+        // lambda + 2 mu with the lambda that belongs to the ratio of stresses across and along, lambda / (lambda + 2 mu).
+        let moment = kappa * thickness.powi(3) / 12.0 * 2.0 * shear / (1.0 - ratio);
+        for (edge, per_length) in [("x0", moment), ("x1", moment), ("y0", ratio * moment), ("y1", ratio * moment)] {
+            let edge = Model::edge_at(format!("edge:{edge}").parse().unwrap()).unwrap();
+            add_ramp(&mut model, LoadKind::Moment { body, edge, per_length });
+        }
+        let mut bend = field(&model, body, |orders, at| [0.0, 0.0, 0.5 * kappa * monomial([2, 0], orders, at)]);
+        if element.is_solid() {
+            let plate = model.body(body);
+            for node in 0..plate.grid().nodes() {
+                bend[3 * plate.vector(node, 3)] = -kappa * plate.grid().parameters(node)[0];
+            }
+        }
+        let mut system = system(model);
+        let rest = system.model().reference().to_vec();
+        let stiffness = tangent(&mut system, &rest, 0.0);
+        let mut force = vec![0.0; rest.len()];
+        system.external_force(&rest, 1.0, &mut force);
+        let ordered = |x: &[f64]| DVector::from_iterator(x.len(), system.free().iter().map(|&i| x[i]));
+        let (bend, force) = (ordered(&bend), ordered(&force));
+        // Relative to the forces of the elements, which cancel inside.
+        let scale = (stiffness.abs() * bend.abs()).amax();
+        let error = (stiffness * bend - &force).amax() / scale;
+        assert!(error < 1e-14 && force.amax() > 1e-7 * scale, "{element:?}: {error:e}");
+    }
+}
+
 /// What a follower adds to the tangent is the symmetric part of its derivative.
 #[test]
 fn followers_add_the_symmetric_part_of_their_derivative() {
@@ -219,8 +257,9 @@ fn followers_add_the_symmetric_part_of_their_derivative() {
         LoadKind::Moment { body, edge, per_length: 0.8 }
     };
     let cases = [(pressure, ""), (moment, "edge:x0"), (moment, "edge:x1"), (moment, "edge:y0"), (moment, "edge:y1")];
-    for (make, edge) in cases {
-        let (mut model, body) = soft([2, 2]);
+    for (element, (make, edge)) in Kind::ALL.into_iter().flat_map(|element| cases.map(|case| (element, case))) {
+        let variant = Plate { element, membrane: None, ..plate(1e-3, 0.3, 50.0, 0.02, Membrane::Full) };
+        let (mut model, body) = rectangle(SIZE, [2, 1], variant);
         add_ramp(&mut model, make(body, edge));
         let mut system = system(model);
         let q = random_state(system.model(), 0.2, &mut Random(13));
@@ -240,6 +279,6 @@ fn followers_add_the_symmetric_part_of_their_derivative() {
         }
         let expected = -0.5 * (&derivatives + derivatives.transpose());
         let error = (&added - &expected).amax() / expected.amax();
-        assert!(error < 1e-8, "{edge}: {error:e}");
+        assert!(error < 1e-8, "{element:?}, {edge}: {error:e}");
     }
 }

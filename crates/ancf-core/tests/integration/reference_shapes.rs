@@ -11,6 +11,10 @@ use ancf_core::model::{Model, Plate};
 use ancf_core::strain::CurvatureLaw;
 use nalgebra::{Rotation3, Vector3};
 
+#[allow(dead_code, reason = "a program of its own")]
+#[path = "../../examples/memory.rs"]
+mod memory;
+
 const THICKNESS: f64 = 0.02;
 const DENSITY: f64 = 7810.0;
 
@@ -53,6 +57,18 @@ fn congruent_elements_share_their_constants() {
             assert_eq!(system(element, &surface, divisions).classes(), classes, "{element:?}, {surface:?}");
         }
     }
+}
+
+/// Where elements are congruent, each takes little more than the numbers of its nodal vectors and of its class; the
+/// documentation shows what this prints.
+#[test]
+fn memory_is_as_documented() {
+    let table = memory::table().unwrap();
+    let page = include_str!("../../../../docs/elements/README.md");
+    assert!(page.contains(&format!("<!-- memory -->\n{table}<!-- /memory -->")), "{table}");
+    let row = table.lines().find_map(|line| line.strip_prefix("| `thin36` | ")).unwrap();
+    let flat: usize = row.split(" | ").next().unwrap().parse().unwrap();
+    assert!((52..56).contains(&flat), "twelve vectors and a class, four bytes each: {flat}");
 }
 
 /// A saddle, by hand: x, y sheared against each other, `z = x y / 2`.

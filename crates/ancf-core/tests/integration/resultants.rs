@@ -7,15 +7,15 @@
 use std::f64::consts::FRAC_PI_2;
 
 use ancf_core::Material;
-use ancf_core::element::Kind;
-use ancf_core::evaluate::{MaterialPoint, Quantity};
+use ancf_core::element::{Kind, Membrane};
+use ancf_core::evaluate::{Layer, MaterialPoint, Quantity};
 use ancf_core::mesh::{Surface, SurfacePoint};
 use ancf_core::model::{BodyId, Model, Plate};
 use ancf_core::nonlinear::Options as NewtonOptions;
 use ancf_core::report::Outcome;
 use ancf_core::statics::{Options, solve};
 
-use crate::common::{add_ramp, line, rectangle, system};
+use crate::common::{GAUSS, Random, add_ramp, line, random_state, rectangle, system, variants};
 
 const YOUNG: f64 = 2e11;
 
@@ -61,8 +61,8 @@ fn a_cantilever_carries_its_load() {
             let name = format!("{element:?}, x = {x}");
             assert_close(at(Quantity::Moment), [moment, 0.0, 0.0], tolerance * p, &name);
             assert_close(at(Quantity::ShearForce), [p, 0.0, 0.0], tolerance * p, &name);
-            assert_close(at(Quantity::StressTop), [-stress, 0.0, 0.0], tolerance * stress + rounding, &name);
-            assert_close(at(Quantity::StressBottom), [stress, 0.0, 0.0], tolerance * stress + rounding, &name);
+            assert_close(at(Quantity::Stress(Layer::Top)), [-stress, 0.0, 0.0], tolerance * stress + rounding, &name);
+            assert_close(at(Quantity::Stress(Layer::Bottom)), [stress, 0.0, 0.0], tolerance * stress + rounding, &name);
         }
     }
 }
@@ -92,7 +92,9 @@ fn strains_are_those_of_the_orthonormal_frame() {
     for element in [Kind::Thin36, Kind::Thin48] {
         for (surface, at) in &shapes {
             let mut model = Model::new();
-            let body = model.add_body("shell", surface, divisions, steel(element, 0.3, h)).unwrap();
+            // The projected strain of curvilinear parameters is constant to the order of the interpolation only.
+            let plate = Plate { membrane: Some(Membrane::Full), ..steel(element, 0.3, h) };
+            let body = model.add_body("shell", surface, divisions, plate).unwrap();
             let q: Vec<f64> = model.reference().iter().map(|x| stretch * x).collect();
             let name = format!("{element:?}, {surface:?}");
             let found = value(&model, body, *at, Quantity::MembraneStrain, &q);
@@ -125,4 +127,93 @@ fn curvatures_turn_with_the_frame() {
         let found = value(&model, body, [1.37, angle], Quantity::Curvature, &q).map(|k| k / small);
         assert_close(found, [cos * cos, sin * sin, -2.0 * sin * cos], 2e-3, &format!("at {angle}"));
     }
+}
+
+/// Forces and moments of any element integrate to the elastic energy: `1/2 N . (h D)^-1 N` to that of the membrane,
+/// `1/2 M . (h^3/12 D)^-1 M` to that of bending, with the points at which the element samples them.
+#[test]
+fn forces_and_moments_are_those_of_the_energy() {
+    let (h, sides) = (1e-3, [0.2, 0.15]);
+    let gauss = |n: usize| -> Vec<(f64, f64)> {
+        match n {
+            2 => [-1.0, 1.0].map(|s: f64| (0.5 + s * 3.0_f64.sqrt() / 6.0, 0.5)).to_vec(),
+            3 => [(-1.0, 5.0), (0.0, 8.0), (1.0, 5.0)]
+                .map(|(s, w): (f64, f64)| (0.5 + s * 0.15_f64.sqrt(), w / 18.0))
+                .to_vec(),
+            _ => GAUSS.to_vec(),
+        }
+    };
+    let simpson = vec![(0.0, 1.0 / 6.0), (0.5, 4.0 / 6.0), (1.0, 1.0 / 6.0)];
+    for (element, membrane, curvature) in variants().filter(|(element, ..)| !element.is_solid()) {
+        let plate = Plate { membrane, curvature, ..steel(element, 0.3, h) };
+        let (model, body) = rectangle(sides, [1, 1], plate);
+        let q = random_state(&model, 0.05, &mut Random(7));
+        let energy = system(model.clone()).internal_force(&q, &mut vec![0.0; q.len()]);
+        let integral = |quantity: Quantity, rule: &[(f64, f64)], section: f64| -> f64 {
+            let compliance = |n: [f64; 3]| (n[0] * n[0] + n[1] * n[1] - 0.6 * n[0] * n[1] + 2.6 * n[2] * n[2]) / YOUNG;
+            let at = |(x, u): &(f64, f64)| {
+                let along = rule.iter().map(|(y, w)| {
+                    let inside = |s: f64| s.clamp(1e-12, 1.0 - 1e-12);
+                    let n = value(&model, body, [sides[0] * inside(*x), sides[1] * inside(*y)], quantity, &q);
+                    0.5 * u * w * sides[0] * sides[1] * compliance(n) / section
+                });
+                along.sum::<f64>()
+            };
+            rule.iter().map(at).sum()
+        };
+        let (in_plane, across) = match membrane {
+            Some(Membrane::Lobatto) => (simpson.clone(), gauss(2)),
+            _ => (gauss(4), gauss(3)),
+        };
+        let name = format!("{element:?} {membrane:?} {curvature:?}");
+        let found = integral(Quantity::MembraneForce, &in_plane, h) / energy.membrane;
+        // The share of the projected membrane that is sampled, (h / l)^2, is quadratic in another strain.
+        assert!((found - 1.0).abs() < 1e-4, "{name}: membrane {found}");
+        let found = integral(Quantity::Moment, &across, h.powi(3) / 12.0) / energy.bending;
+        assert!((found - 1.0).abs() < 1e-9, "{name}: bending {found}");
+    }
+}
+
+/// A square stretched by a along x, by b along y and turned: `S = D E`, and with the stretch c across the thickness, from
+/// `E_zz = -nu / (1 - nu) (E_xx + E_yy)`, the Cauchy stress `a S_xx / (b c)` along x, `b S_yy / (a c)` along y. A solid whose
+/// thickness is stretched by c, too, has the same.
+#[test]
+fn a_stretched_plate_has_the_stresses_of_its_stretches() {
+    let (a, b, nu) = (1.3_f64, 0.9_f64, 0.3);
+    let [xx, yy] = [a, b].map(|s| 0.5 * (s * s - 1.0));
+    let c = (1.0 - 2.0 * nu / (1.0 - nu) * (xx + yy)).sqrt();
+    let second = [xx + nu * yy, yy + nu * xx].map(|e| YOUNG / (1.0 - nu * nu) * e);
+    let [x, y] = [a / (b * c) * second[0], b / (a * c) * second[1]];
+    let equivalent = (x * x - x * y + y * y).sqrt();
+    let turn = Random(3).rotation();
+    for (element, membrane, curvature) in variants() {
+        let plate = Plate { membrane, curvature, ..steel(element, nu, 0.01) };
+        let (model, body) = rectangle([2.0, 1.0], [2, 2], plate);
+        let stretched: Vec<f64> = model.reference().chunks(3).flat_map(|v| [a * v[0], b * v[1], c * v[2]]).collect();
+        let q = crate::common::rotated(&turn, &stretched);
+        let name = format!("{element:?} {membrane:?}");
+        let tolerance = 1e-12 * YOUNG;
+        for layer in [Layer::Top, Layer::Middle, Layer::Bottom] {
+            let at = |quantity: fn(Layer) -> Quantity| value(&model, body, [0.7, 0.3], quantity(layer), &q);
+            assert_close(at(Quantity::Stress), [second[0], second[1], 0.0], tolerance, &name);
+            assert_close(at(Quantity::CauchyStress), [x, y, 0.0], tolerance, &name);
+            assert_close(at(Quantity::PrincipalStress), [x.max(y), x.min(y), 0.0], tolerance, &name);
+            assert_close(at(Quantity::VonMises), [equivalent, 0.0, 0.0], tolerance, &name);
+        }
+    }
+}
+
+/// Simple shear by k: `F = [[1, k], [0, 1]]` is upper triangular, so the frame of the deformed surface is the one at rest.
+#[test]
+fn a_sheared_plate_has_the_cauchy_stress_of_its_deformation_gradient() {
+    let (k, nu) = (0.4_f64, 0.25_f64);
+    let (xx, xy, yy) = (0.0, k, 0.5 * k * k);
+    let c = (1.0 - 2.0 * nu / (1.0 - nu) * (xx + yy)).sqrt();
+    let d = YOUNG / (1.0 - nu * nu);
+    let s = [d * (xx + nu * yy), d * (yy + nu * xx), d * 0.5 * (1.0 - nu) * xy];
+    let expected = [s[0] + 2.0 * k * s[2] + k * k * s[1], s[1], s[2] + k * s[1]].map(|s| s / c);
+    let (model, body) = rectangle([2.0, 1.0], [2, 2], steel(Kind::Thin36, nu, 0.01));
+    let q: Vec<f64> = model.reference().chunks(3).flat_map(|v| [v[0] + k * v[1], v[1], v[2]]).collect();
+    let found = value(&model, body, [0.7, 0.3], Quantity::CauchyStress(Layer::Top), &q);
+    assert_close(found, expected, 1e-12 * YOUNG, "sheared");
 }

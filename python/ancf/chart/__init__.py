@@ -1,0 +1,10 @@
+"""The work-precision chart of a scene: what each accuracy costs, and which settings to take.
+
+`measure` runs the scene in many variants, `write_chart` leaves pictures, tables and a page.
+"""
+
+from ancf.chart.axes import default_axes, read_axes
+from ancf.chart.measure import Chart, measure
+from ancf.chart.report import write_chart
+
+__all__ = ["Chart", "default_axes", "measure", "read_axes", "write_chart"]

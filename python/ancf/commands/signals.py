@@ -1,0 +1,48 @@
+"""Signals that end a command: Ctrl-C and the request to terminate."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+_received = False
+_deferred = False
+
+
+def watch_signals() -> None:
+    """Let the first signal raise `KeyboardInterrupt`, and ignore those that follow: the command ends on it."""
+    global _received  # noqa: PLW0603  A process has one state of its signals.
+    _received = False
+    for number in _SIGNALS:
+        signal.signal(number, _receive)
+
+
+def was_stopped() -> bool:
+    """Tell whether there was a signal."""
+    return _received
+
+
+@contextmanager
+def deferred_signals() -> Iterator[None]:
+    """Let a signal raise `KeyboardInterrupt` at the end of the `with` statement only: results are being written."""
+    global _deferred  # noqa: PLW0603  As above.
+    before, _deferred = _received, True
+    try:
+        yield
+    finally:
+        _deferred = False
+    if _received and not before:
+        raise KeyboardInterrupt
+
+
+def _receive(_number: int, _frame: FrameType | None) -> None:
+    global _received  # noqa: PLW0603  As above.
+    _received = True
+    for number in _SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    if not _deferred:
+        raise KeyboardInterrupt

@@ -1,0 +1,178 @@
+"""Cost: seconds per implicit iteration, explicit step and set-up on this machine, measured once and kept in a file."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ancf import _core
+from ancf.bodies import Rectangle
+from ancf.loads import Gravity
+from ancf.materials import Material
+from ancf.model import Model
+from ancf.places import EDGES
+from ancf.plan.ladder import CONTINUOUS, THIN, Family, Rung
+from ancf.plan.pilots import Pilot
+from ancf.solve import simulate
+from ancf.supports import Support
+
+_SIDES = (1, 3, 8, 20)
+"""Elements along a side of the square plates that are timed."""
+_STEPS = 6
+_FEWEST_THREADED = 65
+"""Elements: fewer are one task, which more threads do not help."""
+
+
+@dataclass(frozen=True)
+class Rates:
+    """What plates of a family cost on one thread and, the larger ones, on all.
+
+    Parameters
+    ----------
+    elements : tuple of int
+        Of the plates that were timed.
+    setup, iteration, force : tuple of float
+        Seconds for each: to make the system, of one implicit iteration, of one explicit step.
+    """
+
+    elements: tuple[int, ...]
+    setup: tuple[float, ...]
+    iteration: tuple[float, ...]
+    force: tuple[float, ...]
+
+    def at(self, what: str, elements: int) -> float:
+        """Return the seconds of one `what` for some elements, between and beyond those timed by powers."""
+        x, y = np.log(self.elements), np.log(getattr(self, what))
+        if elements > self.elements[-1]:
+            slope = max((y[-1] - y[-2]) / (x[-1] - x[-2]), 1.0)
+            return float(np.exp(y[-1] + slope * (np.log(elements) - x[-1])))
+        return float(np.exp(np.interp(np.log(elements), x, y)))
+
+
+class Costs:
+    """Predicts seconds from those of the machine, and better from those of pilots of the same scene.
+
+    Parameters
+    ----------
+    rates : dict of Family to Rates
+        Of the machine.
+    """
+
+    def __init__(self, rates: dict[Family, Rates]) -> None:
+        self._rates = rates
+
+    def ratio(self, rung: Rung, pilot: Pilot) -> float:
+        """Return the cost of a rung relative to that of a pilot with the same stepping.
+
+        Implicit steps are as many on any mesh; the explicit limit shrinks with the sides of the elements.
+        """
+        stepping = pilot.choice.stepping
+        old = pilot.choice.rung
+        explicit = stepping is not None and stepping.explicit
+        kind = "force" if explicit else "iteration"
+        ratio = self._of(kind, rung) / self._of(kind, old)
+        if explicit:
+            finest = [max(max(pair) for pair in r.divisions) for r in (rung, old)]
+            ratio *= finest[0] / finest[1]
+        return ratio
+
+    def setup(self, rung: Rung) -> float:
+        """Return the seconds to make the system of a rung."""
+        return self._of("setup", rung)
+
+    def predict(self, rung: Rung, pilot: Pilot) -> float:
+        """Return the seconds of a rung from a pilot of the same scene with the same stepping."""
+        assert pilot.result is not None
+        setup = pilot.result.seconds["setup"]
+        return self.setup(rung) + max(pilot.seconds - setup, 0.0) * self.ratio(rung, pilot)
+
+    def _of(self, kind: str, rung: Rung) -> float:
+        rates = self._rates.get(rung.family, self._rates[CONTINUOUS])
+        return rates.at(kind, rung.elements)
+
+
+def threads_for(elements: int) -> int | None:
+    """Return how many threads help: 1 for a mesh that is one task, otherwise all (None)."""
+    return 1 if elements < _FEWEST_THREADED else None
+
+
+def calibrated(folder: Path | None = None) -> Costs:
+    """Return the costs of this machine, measured in a few seconds unless a file has them.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        Where the file is kept; that of the user's caches if left out.
+
+    Returns
+    -------
+    Costs
+        For predictions.
+    """
+    file = (folder or _cache()) / "cost.json"
+    key = _machine()
+    try:
+        kept: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+        if kept["machine"] == key:
+            return Costs({Family(e, m): Rates(**_tuples(r)) for e, m, r in kept["rates"]})
+    except (OSError, ValueError, KeyError, TypeError):
+        pass
+    rates = {family: _measure(family) for family in (*THIN, CONTINUOUS)}
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        text = json.dumps({"machine": key, "rates": [[*family, vars(rate)] for family, rate in rates.items()]})
+        file.write_text(text, encoding="utf-8")
+    except OSError:
+        # Without the file they are measured again the next time.
+        pass
+    return Costs(rates)
+
+
+def _tuples(values: dict[str, list[float]]) -> dict[str, Any]:
+    return {name: tuple(numbers) for name, numbers in values.items()}
+
+
+def _cache() -> Path:
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ancf"
+
+
+def _machine() -> list[str]:
+    return [_core.__version__, platform.node(), platform.processor(), str(os.cpu_count()), *_core.info().values()]
+
+
+def _measure(family: Family) -> Rates:
+    """Time short motions of a clamped plate of rubber under its weight."""
+    rubber = Material(E=1e6, nu=0.3, density=1000.0)
+    setup, iteration, force = [], [], []
+    for n in _SIDES:
+        plate = Rectangle(
+            size=(0.3, 0.3),
+            divisions=(n, n),
+            thickness=0.01,
+            material=rubber,
+            element=family.element,  # type: ignore[arg-type]
+            membrane=family.membrane,  # type: ignore[arg-type]
+        )
+        model = Model(
+            bodies={"plate": plate},
+            supports=[Support(at=EDGES[0], clamp=True)],
+            loads=[Gravity(acceleration=(0.0, 0.0, -9.81))],
+        )
+        until = 1e-5
+        step = until / _STEPS
+        runs = [simulate(model, until=until, step=step, method=m, every=until, threads=1) for m in ("hht", "verlet")]
+        implicit, explicit = runs
+        setup.append(implicit.seconds["setup"])
+        iteration.append(_work(implicit) / max(implicit.counts["iterations"], 1))
+        force.append(_work(explicit) / _STEPS)
+    return Rates(tuple(n * n for n in _SIDES), tuple(setup), tuple(iteration), tuple(force))
+
+
+def _work(result: Any) -> float:
+    return max(float(result.seconds["total"] - result.seconds["setup"]), 1e-7)

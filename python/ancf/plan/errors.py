@@ -1,0 +1,53 @@
+"""Errors: differences of rungs relative to the change of what is wanted, rates, and what they promise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Values = Sequence[FloatArray]
+
+RATES = (0.5, 2.0)
+"""Rates of convergence are taken to lie here: a lower one is no convergence, a higher one may be an accident."""
+UNKNOWN_RATE = 1.0
+SAFETY = 1.2
+
+
+def scales(values: Values) -> list[float]:
+    """Return for each wanted quantity its largest change from the first state: what errors are relative to."""
+    return [float(np.linalg.norm(value - value[0], axis=1).max()) for value in values]
+
+
+def distance(one: Values, other: Values, scale: Sequence[float]) -> float:
+    """Return the largest difference over all states and quantities, relative to their scales."""
+    worst = 0.0
+    for a, b, size in zip(one, other, scale, strict=True):
+        worst = max(worst, float(np.linalg.norm(a - b, axis=1).max()) / size)
+    return worst
+
+
+@dataclass(frozen=True)
+class Side:
+    """What is known of the error along one side of the mesh.
+
+    Parameters
+    ----------
+    difference : float
+        Of the rung and the one with half the elements along the side, relative.
+    rate : float or None
+        Observed, from the difference before; None if it is not known.
+    """
+
+    difference: float
+    rate: float | None
+
+    @property
+    def error(self) -> float:
+        """What is left along the side, relative, with safety."""
+        low, high = RATES
+        rate = UNKNOWN_RATE if self.rate is None else min(max(self.rate, low), high)
+        return float(SAFETY * self.difference / (2.0**rate - 1.0))

@@ -1,0 +1,56 @@
+"""The picture of a plan."""
+
+from __future__ import annotations
+
+import matplotlib as mpl
+from matplotlib.figure import Figure
+
+from ancf.plan.report import Plan
+from ancf.probes import QUANTITIES
+
+_STYLES = ("-", "--", ":")
+
+
+def draw(plan: Plan) -> Figure:
+    """Draw errors over costs of what was tried, and what is wanted of the choice.
+
+    Parameters
+    ----------
+    plan : Plan
+        What to draw.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Two panels.
+    """
+    with mpl.rc_context({"text.parse_math": False}):
+        figure = Figure(figsize=(9, 3.6), dpi=130, layout="constrained")
+        left, right = figure.subplots(1, 2)
+        tried: dict[str, list[tuple[float, float]]] = {}
+        for row in plan.rows:
+            if row.error:
+                tried.setdefault(" ".join(row.settings.split()[:2]), []).append((row.seconds, row.error))
+        for name, points in tried.items():
+            left.loglog(*zip(*points, strict=True), "o", markersize=4, label=name)
+        row = plan.rows[plan.chosen]
+        if row.error:
+            left.loglog(row.seconds, row.error, "o", markersize=11, fillstyle="none", color="black", label="chosen")
+        left.axhline(plan.tol, color="gray", linewidth=1)
+        left.set_xlabel("time of the run / s")
+        left.set_ylabel("estimated error, relative")
+        left.legend(fontsize="small", frameon=False)
+        probes = [probe for probe in plan.scene.model.probes if probe.name in plan.scale]
+        for index, probe in enumerate(probes):
+            record = plan.result.probes[probe.name]
+            change = (record.value - record.value[0]) / plan.scale[probe.name]
+            for values, component, style in zip(change.T, QUANTITIES[probe.quantity].components, _STYLES, strict=False):
+                right.plot(record.t, values, style, color=f"C{index}", label=f"{probe.name} {component}")
+        run = plan.result.run
+        right.set_xlabel(" / ".join(part for part in (run.parameter, run.unit) if part))
+        right.set_ylabel("change, relative to its largest")
+        right.legend(fontsize="small", frameon=False)
+        for axes in (left, right):
+            axes.grid(alpha=0.25)
+            axes.spines[["top", "right"]].set_visible(False)
+    return figure

@@ -1,0 +1,151 @@
+"""Pilots: runs of single rungs, each made once, with a limit of time."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ancf.errors import InputError
+from ancf.plan.ladder import Choice, apply
+from ancf.result import Result
+from ancf.run import Modes
+from ancf.scene import Scene
+from ancf.solve import solve
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Pilot:
+    """A run of a choice.
+
+    Parameters
+    ----------
+    choice : Choice
+        What was run.
+    result : Result or None
+        What it left, if it reached its end.
+    values : list of ndarray, each of shape (states, components)
+        The wanted quantities; empty if it did not reach its end.
+    seconds : float
+        What it took.
+    outcome : str
+        "ok", or why it did not reach its end.
+    """
+
+    choice: Choice
+    result: Result | None = field(repr=False)
+    values: list[FloatArray] = field(repr=False)
+    seconds: float
+    outcome: str
+
+    @property
+    def ok(self) -> bool:
+        """Whether it reached its end."""
+        return self.result is not None
+
+
+class _TooSlowError(Exception):
+    """A pilot has used up its time."""
+
+
+class Pilots:
+    """Runs choices of a scene and remembers them.
+
+    Parameters
+    ----------
+    scene : Scene
+        What is planned.
+    want : list of str
+        Names of the probes that matter.
+    budget : float
+        Seconds that all pilots together may take.
+    threads : int or None
+        For all runs.
+    """
+
+    def __init__(self, scene: Scene, want: list[str], budget: float, threads: int | None) -> None:
+        self.scene = scene
+        self.want = want
+        self.threads = threads
+        self._started = time.perf_counter()
+        self._budget = budget
+        self._done: dict[Choice, Pilot] = {}
+
+    @property
+    def spent(self) -> float:
+        """Seconds since the beginning."""
+        return time.perf_counter() - self._started
+
+    @property
+    def left(self) -> float:
+        """Seconds of the budget that are left."""
+        return self._budget - self.spent
+
+    @property
+    def done(self) -> list[Pilot]:
+        """All pilots so far, in their order."""
+        return list(self._done.values())
+
+    def known(self, choice: Choice) -> Pilot | None:
+        """Return the pilot of a choice if it was run to its end."""
+        pilot = self._done.get(choice)
+        return pilot if pilot is not None and pilot.ok else None
+
+    def run(self, choice: Choice, limit: float = np.inf) -> Pilot:
+        """Run a choice, or return what is remembered of it.
+
+        Parameters
+        ----------
+        choice : Choice
+            What to run.
+        limit : float, optional
+            Seconds after which to give up.
+
+        Returns
+        -------
+        Pilot
+            How it went.
+        """
+        if choice in self._done and (self._done[choice].ok or self._done[choice].outcome != _SLOW):
+            return self._done[choice]
+        pilot = self._run(choice, limit if self.left > 0.0 else 0.0)
+        self._done[choice] = pilot
+        return pilot
+
+    def _run(self, choice: Choice, limit: float) -> Pilot:
+        threads = 1 if choice.rung.elements <= _ONE_TASK else self.threads
+        # On one thread the processor's time is what the run costs, whatever else the machine does.
+        clock = time.process_time if threads == 1 else time.perf_counter
+        start = clock()
+
+        def watch(_: float) -> None:
+            if clock() - start > limit or self.left <= 0.0:
+                raise _TooSlowError
+
+        def failed(outcome: str) -> Pilot:
+            return Pilot(choice, None, [], clock() - start, outcome)
+
+        if limit <= 0:
+            return failed(_SLOW)
+        try:
+            scene = apply(self.scene, choice)
+            start = clock()
+            assert not isinstance(scene.run, Modes)
+            result = solve(scene.model, scene.run, threads=threads, progress=watch, throw=False)
+        except _TooSlowError:
+            return failed(_SLOW)
+        except InputError as error:
+            return failed(str(error))
+        seconds = clock() - start
+        if result.status != "ok":
+            return failed(result.reason)
+        return Pilot(choice, result, [result.probes[name].value for name in self.want], seconds, "ok")
+
+
+_SLOW = "slower than others"
+_ONE_TASK = 64
+"""Elements that are evaluated as one task: more threads do not help them."""

@@ -1,0 +1,325 @@
+"""Planning a scene: from what is wanted to the settings of the run."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ancf.errors import InputError, Mistake, Mistakes, one_of, show
+from ancf.model import Model
+from ancf.plan.cost import calibrated
+from ancf.plan.errors import Values, distance, scales
+from ancf.plan.ladder import RIGID, Choice, Family, Rung, Stepping, apply, coarsest, families
+from ancf.plan.pilots import Pilot, Pilots
+from ancf.plan.report import Plan, Row
+from ancf.plan.rigid import deflection
+from ancf.plan.search import Search
+from ancf.plan.timing import SHARE, Timing, reference, steppings
+from ancf.result import Result
+from ancf.run import Dynamic, Static
+from ancf.scene import Scene, load_scene
+from ancf.solve import solve
+
+BUDGET = 300.0
+"""Seconds that a plan may take if nothing is said."""
+_RIGID_SHARE = 0.5
+"""Part of the tolerance below which the estimated deflection of a rigid body is no matter."""
+_CHECKS = 3
+
+
+def plan(
+    scene: Scene | Model | str | os.PathLike[str],
+    *,
+    run: Static | Dynamic | None = None,
+    want: str | Sequence[str] | None = None,
+    tol: float = 1e-2,
+    budget: float = BUDGET,
+    threads: int | None = None,
+) -> Plan:
+    """Find the cheapest settings of a scene for which the error in what is wanted stays below a tolerance.
+
+    Elements, meshes, integrators and steps of the scene itself do not matter: they are chosen.
+
+    Parameters
+    ----------
+    scene : Scene, Model, str or path
+        What to plan; a file is read.
+    run : Static or Dynamic, optional
+        How to run a `Model`; in motion its duration and outputs matter, its steps do not.
+    want : str or sequence of str, optional
+        Names of the probes that matter; all if left out.
+    tol : float, default 1e-2
+        Largest error that is allowed of each of them, over all recorded states, relative to the largest change of the
+        quantity from the first state. From 1e-6 to below 1.
+    budget : float, default 300
+        Seconds after which pilots end; the plan then says what it can promise.
+    threads : int, optional
+        For the pilots; all if left out.
+
+    Returns
+    -------
+    Plan
+        The chosen scene, why it was chosen, and what was tried.
+
+    Raises
+    ------
+    InputError
+        If there is no such probe, it does not change, or the scene is none that can be planned.
+    Interrupted
+        On Ctrl-C.
+    """
+    scene = _scene(scene, run)
+    names = _wanted(scene, want)
+    _check(scene, tol, budget)
+    costs = calibrated()
+    pilots = Pilots(scene, names, budget, threads)
+    allowed = families(scene.model)
+    base = coarsest(scene.model)
+    rigid: Pilot | None = None
+    bent: list[float] = []
+    timings: list[Timing] = []
+    if isinstance(scene.run, Dynamic):
+        rigid, bent = _rigid(pilots, base, allowed[0], tol)
+        if rigid is not None and max(bent) <= _RIGID_SHARE * tol:
+            return _as_rigid(scene, pilots, rigid, max(bent), tol)
+        timings = _timings(pilots, allowed, base, tol)
+    search = Search(pilots, costs, allowed, base, tol, timings)
+    first = _first_family(search)
+    if first is None or not search.up(first):
+        raise InputError(Mistake(("scene",), f"no pilot reached its end: {_last_words(pilots)}"))
+    scale = _scales(search.exact, names)
+    search.down()
+    chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
+    in_space = search.observed()[chosen.choice]
+    chosen, in_time = _check_time(search, chosen, scale)
+    return _report(search, chosen, in_space, in_time, scale)
+
+
+def _of_rung(pilots: Pilots, rung: Rung) -> Pilot:
+    return min((p for p in pilots.done if p.ok and p.choice.rung == rung), key=lambda pilot: pilot.seconds)
+
+
+def _scene(given: Scene | Model | str | os.PathLike[str], run: Static | Dynamic | None) -> Scene:
+    if isinstance(given, Model):
+        if run is None:
+            raise InputError(Mistake(("run",), "is missing: Static(...) or Dynamic(...)"))
+        run.check(given)
+        return Scene("", given, run)
+    if run is not None:
+        raise InputError(Mistake(("run",), "is for models; a scene has its own", show(type(run).__name__)))
+    return given if isinstance(given, Scene) else load_scene(given)
+
+
+def _wanted(scene: Scene, want: str | Sequence[str] | None) -> list[str]:
+    known = [probe.name for probe in scene.model.probes]
+    if not known:
+        raise InputError(Mistake(("want",), "the scene has no probes: nothing can be wanted of it"))
+    names = known if want is None else [want] if isinstance(want, str) else list(want)
+    mistakes = Mistakes()
+    for name in names or [""]:
+        if name not in known:
+            mistakes.add(("want",), one_of(known, name), name)
+    mistakes.check()
+    return names
+
+
+def _check(scene: Scene, tol: float, budget: float) -> None:
+    mistakes = Mistakes()
+    for name, value, low, high in (("tol", tol, 1e-6, 1.0), ("budget", budget, 0.0, np.inf)):
+        number = isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value)
+        if not number or not low <= value < high or value <= 0:
+            allowed = "a number from 1e-6 to below 1" if name == "tol" else "a number of seconds greater than 0"
+            mistakes.add((name,), f"allowed is {allowed}", value)
+    if not isinstance(scene.run, (Static, Dynamic)):
+        mistakes.add(("run", "kind"), "statics and motion can be planned", scene.run.kind)
+    if isinstance(scene.run, Static) and scene.run.path == "arc":
+        mistakes.add(
+            ("run", "path"), 'can be planned only for "load": steps along an arc differ from mesh to mesh', "arc"
+        )
+    mistakes.check()
+
+
+def _scales(values: Values, names: list[str]) -> list[float]:
+    scale = scales(values)
+    mistakes = Mistakes()
+    for name, size in zip(names, scale, strict=True):
+        if size == 0.0:
+            mistakes.add(("want",), "does not change, so that no error is relative to it", name)
+    mistakes.check()
+    return scale
+
+
+def _rigid(
+    pilots: Pilots, base: tuple[tuple[int, int], ...], family: Family, tol: float
+) -> tuple[Pilot | None, list[float]]:
+    """Run the scene with rigid bodies, and estimate what deflection changes of the wanted quantities, relative."""
+    curved = any(body.shape != "rectangle" for body in pilots.scene.model.bodies.values())
+    divisions = tuple((4 * x, 4 * y) for x, y in base) if curved else base
+    rtol = min(1e-3, 1e-2 * tol)
+    pilot = pilots.run(Choice(Rung(RIGID, divisions), Stepping("rigid", rtol=rtol)), pilots.left / 4)
+    if not pilot.ok or pilot.result is None:
+        return None, []
+    scale = scales(pilot.values)
+    if min(scale) == 0.0:
+        return None, []
+    # Deflections need more than the corners.
+    finer = Rung(family, tuple((max(x, 2), max(y, 2)) for x, y in divisions))
+    again = apply(pilots.scene, replace(pilot.choice, rung=replace(finer, family=RIGID)))
+    assert isinstance(again.run, Dynamic)
+    result = solve(again.model, again.run, threads=1, throw=False)
+    elastic = apply(pilots.scene, Choice(finer)).model
+    bent = dict(zip((p.name for p in elastic.probes), deflection(elastic, result), strict=True))
+    return pilot, [bent[name] / size for name, size in zip(pilots.want, scale, strict=True)]
+
+
+def _as_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: float) -> Plan:
+    reason = (
+        f"No body deforms to speak of: loads and inertia change what is wanted by about {bent:.1g} of its change, "
+        f"so six rigid motions do."
+    )
+    rows = [Row(str(p.choice), None, p.seconds, None, bent if p.ok else None, p.outcome) for p in pilots.done]
+    scale = dict(zip(pilots.want, scales(pilot.values), strict=True))
+    chosen = apply(scene, pilot.choice)
+    return Plan(
+        scene=chosen,
+        result=_result(pilot),
+        choice=str(pilot.choice),
+        tol=tol,
+        scale=scale,
+        error=bent,
+        error_in_time=0.0,
+        converged=True,
+        reasons=[reason],
+        rows=rows,
+        chosen=rows.index(next(row for row in rows if row.settings == str(pilot.choice))),
+        seconds=pilots.spent,
+        predicted_seconds=pilot.seconds,
+        threads=1,
+    )
+
+
+def _timings(
+    pilots: Pilots, allowed: tuple[Family, ...], base: tuple[tuple[int, int], ...], tol: float
+) -> list[Timing]:
+    """Find steppings on a coarse mesh, of the first family whose pilots reach their end."""
+    for family in allowed:
+        rung = Rung(family, tuple((2 * x, 2 * y) for x, y in base))
+        exact = reference(pilots, rung, tol)
+        if exact.ok:
+            _scales(exact.values, pilots.want)
+            found = steppings(pilots, rung, exact.values, tol)
+            if not found:
+                assert exact.choice.stepping is not None
+                found = [Timing(exact.choice.stepping, SHARE * tol, exact)]
+            return found
+    raise InputError(Mistake(("scene",), f"no pilot reached its end: {_last_words(pilots)}"))
+
+
+def _first_family(search: Search) -> Family | None:
+    """Return the family that changes least when the coarsest meshes are refined."""
+    best: tuple[float, Family] | None = None
+    cheapest = search.pilots.left / 8
+    for family in search.families:
+        coarse = Rung(family, search.base)
+        fine = Rung(family, tuple((2 * x, 2 * y) for x, y in search.base))
+        pilots = [search.run(rung, 3 * cheapest + 0.02) for rung in (coarse, fine)]
+        if pilots[1].ok:
+            cheapest = min(cheapest, pilots[1].seconds)
+            change = np.inf
+            if pilots[0].ok:
+                change = distance(pilots[0].values, pilots[1].values, scales(pilots[1].values))
+            if best is None or change < best[0]:
+                best = change, family
+    return best[1] if best else None
+
+
+def _check_time(search: Search, chosen: Pilot, scale: Sequence[float]) -> tuple[Pilot, float]:
+    """Repeat the choice with tighter steps until they no longer matter; return it with its error in time, relative."""
+    error = 0.0
+    for _ in range(_CHECKS):
+        stepping = chosen.choice.stepping
+        if stepping is None:
+            return chosen, 0.0
+        tight = search.pilots.run(replace(chosen.choice, stepping=stepping.tighter()))
+        if not tight.ok:
+            break
+        error = distance(tight.values, chosen.values, scale)
+        if error <= 2 * SHARE * search.tol:
+            break
+        chosen = tight
+    return chosen, error
+
+
+def _report(
+    search: Search,
+    chosen: Pilot,
+    in_space: float,
+    in_time: float,
+    scale: Sequence[float],
+) -> Plan:
+    pilots, tol, finest = search.pilots, search.tol, search.best
+    errors = search.observed()
+    converged = in_space <= tol and in_time <= tol / 2
+    reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.1g}."]
+    if chosen.choice.rung == finest:
+        reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
+    if chosen.choice.stepping is not None:
+        reasons.append(
+            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; its error is {in_time:.1g}."
+        )
+    axes = "xy"
+    names = list(pilots.scene.model.bodies)
+    for (body, axis), side in search.sides.items():
+        where = f"{names[body]}, {axes[axis]}" if len(names) > 1 else axes[axis]
+        rate = "unknown" if side.rate is None else f"{side.rate:.1f}"
+        reasons.append(f"Refining {finest} along {where} changed {side.difference:.1g}, rate {rate}.")
+    if not converged:
+        slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
+        why = (
+            "differences hardly shrink as the mesh is refined, as at a singular point or where the motion is chaotic"
+            if slow
+            else "the budget or the largest mesh was reached"
+        )
+        reasons.append(
+            f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.1g}."
+        )
+    rows = [
+        Row(
+            str(p.choice),
+            search.predicted.get(p.choice),
+            p.seconds,
+            None,
+            errors.get(p.choice),
+            p.outcome,
+        )
+        for p in pilots.done
+    ]
+    index = next(i for i, p in enumerate(pilots.done) if p.choice == chosen.choice)
+    return Plan(
+        scene=apply(pilots.scene, chosen.choice),
+        result=_result(chosen),
+        choice=str(chosen.choice),
+        tol=tol,
+        scale=dict(zip(pilots.want, scale, strict=True)),
+        error=in_space,
+        error_in_time=in_time,
+        converged=converged,
+        reasons=reasons,
+        rows=rows,
+        chosen=index,
+        seconds=pilots.spent,
+        predicted_seconds=search.predicted.get(chosen.choice, chosen.seconds),
+        threads=1 if chosen.choice.rung.elements <= 64 else None,
+    )
+
+
+def _result(pilot: Pilot) -> Result:
+    assert pilot.result is not None
+    return pilot.result
+
+
+def _last_words(pilots: Pilots) -> str:
+    return pilots.done[-1].outcome if pilots.done else "none was made"

@@ -1,0 +1,95 @@
+"""The lowest rung of motion: bodies that do not deform, and how far the bodies of a scene are from it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ancf import _core
+from ancf.model import Model
+from ancf.result import Result
+
+FloatArray = NDArray[np.float64]
+
+_MOMENTS = 12
+"""States along the motion at which the deflection is estimated."""
+_DYNAMIC = 2.0
+"""A load that comes suddenly deflects a structure up to twice as far as one that comes slowly."""
+_MOST_COORDINATES = 1500
+_HELD = 1e-9
+
+
+def deflection(model: Model, rigid: Result) -> list[float]:
+    """Estimate how far each probe is from where a rigid motion has it.
+
+    At moments of the rigid motion the loads and the inertia act on the elastic body as if they stayed.
+
+    Parameters
+    ----------
+    model : Model
+        The elastic bodies, on the mesh of `rigid`.
+    rigid : Result
+        Their motion as rigid bodies.
+
+    Returns
+    -------
+    list of float
+        For each probe of the model the largest change of its quantity, in its unit, twice the static one because loads
+        may come suddenly; infinite if it cannot be told.
+    """
+    unknown = [np.inf] * len(model.probes)
+    core = model.assemble("constant")
+    if core.coordinates > _MOST_COORDINATES:
+        return unknown
+    free = core.free().astype(int)
+    mass = _dense(core.mass(), core.coordinates)
+    worst = np.zeros(len(model.probes))
+    for k in np.unique(np.linspace(0, len(rigid.t) - 1, _MOMENTS).astype(int)):
+        q, t = rigid.q[k], float(rigid.t[k])
+        load = core.external_force(q, t) - mass @ rigid.a[k]
+        stiffness = _dense(core.tangent(q, t), core.coordinates)[np.ix_(free, free)]
+        # Loads and inertia together do no work in the rigid motions that supports leave: any stiffness holds these.
+        loose = _rigid_motions(model, core, q)[free]
+        stiffness += np.abs(np.diag(stiffness)).mean() * (loose @ loose.T)
+        try:
+            change = np.linalg.solve(stiffness, load[free])
+        except np.linalg.LinAlgError:
+            return unknown
+        moved = q.copy()
+        moved[free] += _DYNAMIC * (change - loose @ (loose.T @ change))
+        states, velocities = np.array([q, moved]), np.array([rigid.v[k], rigid.v[k]])
+        for index, probe in enumerate(model.probes):
+            value = model.evaluate(probe.body, [probe.at], probe.quantity, states, velocities)[:, 0]
+            worst[index] = max(worst[index], float(np.linalg.norm(value[1] - value[0])))
+    return [float(x) if np.isfinite(x) else np.inf for x in worst]
+
+
+def _dense(entries: tuple[NDArray[np.uint64], NDArray[np.uint64], FloatArray], n: int) -> FloatArray:
+    rows, columns, values = entries
+    full = np.zeros((n, n))
+    np.add.at(full, (rows.astype(int), columns.astype(int)), values)
+    return full
+
+
+def _rigid_motions(model: Model, core: _core.Model, q: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of the rigid motions that supports leave in the state q, shape (n, motions)."""
+    vectors = q.reshape(-1, 3)
+    motions = []
+    for name in model.bodies:
+        indices = core.vectors(name).astype(int)
+        centre = vectors[indices[:, 0] // 3].mean(axis=0)
+        for axis in np.eye(3):
+            shift, turn = np.zeros_like(vectors), np.zeros_like(vectors)
+            shift[indices[:, 0] // 3] = axis
+            own = indices.ravel() // 3
+            arms = vectors[own].copy()
+            arms[:: indices.shape[1]] -= centre
+            turn[own] = np.cross(axis, arms)
+            motions += [shift.ravel(), turn.ravel()]
+    basis = np.linalg.qr(np.array(motions).T)[0]
+    fixed = np.setdiff1d(np.arange(len(q)), core.free().astype(int))
+    if len(fixed):
+        _, singular, right = np.linalg.svd(basis[fixed])
+        rank = int((singular > _HELD).sum())
+        basis = basis @ right[rank:].T
+    return basis

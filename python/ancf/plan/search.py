@@ -1,0 +1,378 @@
+"""The search up the ladder, until the error is small enough, and down again, to what is cheapest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+
+from ancf.plan.cost import Costs
+from ancf.plan.errors import RATES, Side, Values, distance, scales
+from ancf.plan.ladder import COUNTS, RIGID, Choice, Family, Rung, Stepping
+from ancf.plan.pilots import Pilot, Pilots
+from ancf.plan.timing import Timing
+
+BEST = 0.4
+"""Part of the tolerance below which the finest rung's own error must be."""
+ACCEPT = 0.8
+"""Part of the tolerance that the estimated error of the choice may reach."""
+_DOMINANT = 0.4
+"""A side is refined if its error is at least this part of the largest."""
+_SMALL_SIDE = 0.05
+"""Part of the tolerance below which a side is not refined further."""
+_TRIALS = 8
+"""Cheaper rungs that are tried on the way down."""
+_WORTH = 0.75
+"""Predicted cost of a trial relative to the choice so far."""
+_COMPARED = 32
+"""Elements up to which a rung is compared with neighbours that are coarser along one side."""
+_TRUST = 0.5
+"""Part of the error that remains when it is extrapolated."""
+_SHORTER = 5
+"""Times that steps are shortened where they cannot be solved."""
+_PATIENCE = 2
+"""Rungs in a row that may be no better than the one before."""
+_LIKELY = 0.2
+"""Chance below which a cheaper rung is not tried."""
+_STALLED = 0.4
+"""Rate of convergence that counts as no better."""
+_AGREED = 0.6
+"""Part of the tolerance up to which another element on the finest mesh may be off."""
+_LARGEST = 20_000
+"""Elements of the finest rung."""
+
+
+@dataclass
+class Search:
+    """The state of a search.
+
+    Parameters
+    ----------
+    pilots : Pilots
+        Runs and remembers.
+    costs : Costs
+        Predicts.
+    families : sequence of Family
+        That the scene allows.
+    base : tuple of pairs of int
+        The coarsest divisions.
+    tol : float
+        Of the plan.
+    timings : list of Timing
+        In motion, what is good enough in time; empty in statics.
+    """
+
+    pilots: Pilots
+    costs: Costs
+    families: Sequence[Family]
+    base: tuple[tuple[int, int], ...]
+    tol: float
+    timings: list[Timing] = field(default_factory=list)
+    predicted: dict[Choice, float] = field(default_factory=dict)
+    sides: dict[tuple[int, int], Side] = field(default_factory=dict)
+    allowed: list[Stepping] = field(default_factory=list)
+    best: Rung = field(init=False)
+    exact: Values = field(init=False)
+    own: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Allow the steppings that are good enough; those that replace them are allowed later."""
+        self.allowed = [timing.stepping for timing in self.timings]
+
+    def stepping(self, rung: Rung) -> Stepping | None:
+        """Return the stepping that is predicted to be the cheapest on a rung; None in statics."""
+        if not self.timings:
+            return None
+        return min(self.timings, key=lambda timing: self.costs.predict(rung, timing.pilot)).stepping
+
+    def choice(self, rung: Rung) -> Choice:
+        """Return the rung with the stepping that is predicted to be the cheapest."""
+        return Choice(rung, self.stepping(rung))
+
+    def climb(self, rung: Rung) -> Pilot:
+        """Run a rung; where its steps are too long to be solved, with shorter ones from now on."""
+        pilot = self.run(rung)
+        for _ in range(_SHORTER):
+            stepping = pilot.choice.stepping
+            if pilot.ok or stepping is None or self.pilots.left <= 0:
+                break
+            for index, timing in enumerate(self.timings):
+                if timing.stepping == stepping:
+                    shorter = replace(stepping, reuse=False) if stepping.reuse else stepping.tighter()
+                    self.allowed.insert(0, shorter)
+                    # Its cost is known from the pilot with the longer steps.
+                    again = self.pilots.run(Choice(timing.pilot.choice.rung, shorter))
+                    self.timings[index] = replace(timing, stepping=shorter, pilot=again if again.ok else timing.pilot)
+            pilot = self.run(rung)
+        return pilot
+
+    def run(self, rung: Rung, limit: float = np.inf) -> Pilot:
+        """Run a rung, after its cost has been predicted from the pilot most like it."""
+        choice = self.choice(rung)
+        predicted = self.predict(rung)
+        if predicted is not None:
+            self.predicted.setdefault(choice, predicted)
+        return self.pilots.run(choice, limit)
+
+    def predict(self, rung: Rung) -> float | None:
+        """Return the seconds that a rung should take, from the pilot that is most like it."""
+        stepping = self.stepping(rung)
+        like = [p for p in self.pilots.done if p.ok and p.choice.stepping == stepping and p.choice.rung != rung]
+        if not like:
+            return None
+
+        def unlike(pilot: Pilot) -> tuple[bool, float]:
+            other = pilot.choice.rung
+            return other.family != rung.family, abs(np.log(other.elements / rung.elements))
+
+        return self.costs.predict(rung, min(like, key=unlike))
+
+    def values(self, rung: Rung) -> Values | None:
+        """Return the wanted quantities of a rung if it has been run, with any stepping that is good enough."""
+        choices = [Choice(rung, stepping) for stepping in self.allowed] if self.timings else [Choice(rung)]
+        found = (self.pilots.known(choice) for choice in choices)
+        return next((pilot.values for pilot in found if pilot is not None), None)
+
+    def up(self, family: Family) -> bool:
+        """Refine until the error left is a part of the tolerance.
+
+        Parameters
+        ----------
+        family : Family
+            What to refine.
+
+        Returns
+        -------
+        bool
+            Whether any rung reached its end; `best`, `exact` and `own` are then set.
+        """
+        rung = _doubled(Rung(family, self.base))
+        last: Rung | None = None
+        stalled = 0
+        while True:
+            if self.climb(rung).ok:
+                before = self.own if last is not None else np.inf
+                self._learn(rung, last)
+                last = rung
+                stalled = stalled + 1 if self.own > before * 2.0**-_STALLED else 0
+                finer = self._refined(rung)
+                if self.own <= BEST * self.tol and self._confirmed(rung):
+                    return True
+            else:
+                if last is not None:
+                    return True
+                finer = _doubled(rung)
+            if finer.elements > _LARGEST or (self.predict(finer) or 0.0) > self.pilots.left or stalled > _PATIENCE:
+                return last is not None
+            rung = finer
+
+    def _learn(self, rung: Rung, last: Rung | None) -> None:
+        """Set the finest rung, what is known along its sides, the extrapolated values and what they lack.
+
+        Small rungs are compared with their neighbours that are coarser along one side. Of larger ones only the last
+        rung is at hand: its difference is shared out along the sides that were refined as the errors were before.
+        """
+        values = self.values(rung)
+        assert values is not None
+        scale = scales(values)
+        before = dict(self.sides)
+        refined = [side for side in rung.sides() if last is None or _count(rung, side) > _count(last, side)]
+        if last is None or rung.elements <= _COMPARED:
+            for side in rung.sides():
+                half = rung.scaled(side, Fraction(1, 2))
+                if half is None:
+                    continue
+                pilot = self.run(half)
+                coarse = pilot.values if pilot.ok else None if last is None else self.values(last)
+                if coarse is None:
+                    continue
+                difference = distance(values, coarse, scale)
+                old = before.get(side)
+                rate = old.rate if old else None
+                if old is not None and side in refined:
+                    rate = _rate(old.difference, difference)
+                self.sides[side] = Side(difference, rate)
+        else:
+            coarse = self.values(last)
+            assert coarse is not None
+            total = distance(values, coarse, scale)
+            expected = {side: before[side].error for side in refined if side in before}
+            share = sum(expected.values())
+            for side in refined:
+                part = total * expected.get(side, 0.0) / share if share else total
+                self.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
+        self.best, self.exact = rung, values
+        self.own = sum(side.error for side in self.sides.values()) if self.sides else np.inf
+        if last is not None and refined:
+            self._extrapolate(values, last, scale, refined)
+
+    def _extrapolate(self, values: Values, last: Rung, scale: Sequence[float], refined: list[tuple[int, int]]) -> None:
+        """Where the sides refined last converge at a known rate, take out the error that it tells of."""
+        rates = [self.sides[side].rate for side in refined]
+        known = [rate for rate in rates if rate is not None]
+        coarse = self.values(last)
+        if coarse is None or len(known) < len(rates) or min(known) < RATES[0] * 2:
+            return
+        factor = 1.0 / (2.0 ** min(*known, RATES[1]) - 1.0)
+        self.exact = [fine + factor * (fine - old) for fine, old in zip(values, coarse, strict=True)]
+        removed = factor * distance(values, coarse, scale)
+        self.own = max(self.own - (1 - _TRUST) * removed, _TRUST * self.own)
+
+    def _confirmed(self, rung: Rung) -> bool:
+        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing."""
+        order = sorted(self.families, key=lambda family: family.element == rung.family.element)
+        for family in order:
+            if family == rung.family:
+                continue
+            pilot = self.run(replace(rung, family=family), 6 * self._seconds(rung))
+            if pilot.ok:
+                other = distance(pilot.values, self.exact, scales(self.exact))
+                if other > max(_AGREED * self.tol, 3 * self.own):
+                    self.own = max(self.own, other / 2)
+                break
+        return self.own <= BEST * self.tol
+
+    def _seconds(self, rung: Rung) -> float:
+        pilot = self.pilots.known(self.choice(rung))
+        return pilot.seconds + 0.02 if pilot else np.inf
+
+    def _refined(self, rung: Rung) -> Rung:
+        """Double the elements along the sides whose error dominates."""
+        if not self.sides:
+            return _doubled(rung)
+        worst = max(side.error for side in self.sides.values())
+        for at, side in self.sides.items():
+            if side.error >= _DOMINANT * worst and side.error > _SMALL_SIDE * self.tol:
+                rung = rung.scaled(at, Fraction(2)) or rung
+        return rung if any(side.error > _SMALL_SIDE * self.tol for side in self.sides.values()) else _doubled(rung)
+
+    def down(self) -> None:
+        """Look for cheaper rungs below the finest."""
+        start = self.pilots.spent
+        for _ in range(_TRIALS):
+            current = self.cheapest(self.observed())
+            limit = np.inf if current is None else current.seconds
+            trial = self._trial(limit)
+            if trial is None or self.pilots.spent - start > max(start, 0.1):
+                break
+            self.run(trial, 1.5 * limit + 0.02)
+
+    def observed(self) -> dict[Choice, float]:
+        """Return the error of every pilot that reached its end: its distance to `exact` and what that lacks."""
+        scale = scales(self.exact)
+        done = (pilot for pilot in self.pilots.done if pilot.ok)
+        return {pilot.choice: distance(pilot.values, self.exact, scale) + self.own for pilot in done}
+
+    def cheapest(self, errors: dict[Choice, float]) -> Pilot | None:
+        """Return the cheapest pilot whose error is small enough."""
+        rigid = [pilot.choice.stepping for pilot in self.pilots.done if pilot.choice.rung.family == RIGID]
+        allowed = [*self.allowed, *rigid] if self.timings else [None]
+        fits = [
+            pilot
+            for choice, error in errors.items()
+            if error <= ACCEPT * self.tol
+            and choice.stepping in allowed
+            and (pilot := self.pilots.known(choice)) is not None
+        ]
+        return min(fits, key=lambda pilot: pilot.seconds, default=None)
+
+    def _trial(self, limit: float) -> Rung | None:
+        """Return the rung that was not run yet and promises the largest saving for its cost."""
+        found: tuple[float, Rung] | None = None
+        done = [pilot for pilot in self.pilots.done if pilot.ok]
+        tried = {pilot.choice.rung for pilot in self.pilots.done}
+        errors = self.observed()
+        poor = [pilot.choice.rung for pilot in done if errors[pilot.choice] > ACCEPT * self.tol]
+        for family in self.families:
+            guess = self._guess(family)
+            for rung in self._below(family):
+                # A rung is not better than a finer one of its family.
+                if rung in tried or any(_within(rung, other) for other in poor):
+                    continue
+                cost = self.predict(rung)
+                if cost is None or cost > _WORTH * limit or cost > self.pilots.left:
+                    continue
+                likely = 1.0 / (1.0 + ((guess(rung) + self.own) / (ACCEPT * self.tol)) ** 4)
+                saving = likely * (1.0 - cost / limit if np.isfinite(limit) else 1.0)
+                if likely > _LIKELY and (found is None or saving > found[0]):
+                    found = saving, rung
+        return found[1] if found else None
+
+    def _below(self, family: Family) -> Iterator[Rung]:
+        """Yield the rungs of a family with no more elements along any side than the finest."""
+        if len(self.base) > 1:
+            # Of several bodies all are coarsened alike.
+            for k in COUNTS:
+                pairs = zip(self.best.divisions, self.base, strict=True)
+                yield Rung(family, tuple((max(a, x // k), max(b, y // k)) for (x, y), (a, b) in pairs))
+            return
+        [(x, y)], [(a, b)] = self.best.divisions, self.base
+        for m, n in product(COUNTS, COUNTS):
+            if m * a <= x and n * b <= y:
+                yield Rung(family, ((m * a, n * b),))
+
+    def _guess(self, family: Family) -> _Guess:
+        """Return a model of the errors of a family: a power of the elements along each side, fitted to its pilots."""
+        rates = {at: min(max(side.rate or 2.0, 1.0), 3.0) for at, side in self.sides.items()}
+        scale = scales(self.exact)
+        sides = list(self.best.sides())
+        rows = []
+        for pilot in self.pilots.done:
+            rung = pilot.choice.rung
+            if pilot.ok and rung.family == family:
+                error = max(distance(pilot.values, self.exact, scale), 1e-12)
+                # Fine rungs tell more of fine ones.
+                rows.append(
+                    [_power(rung, at, rates) / error * rung.elements**0.5 for at in sides] + [rung.elements**0.5]
+                )
+        if not rows:
+            # Nothing is known of it: as good as the one that was refined.
+            return self._guess(self.best.family) if family != self.best.family else _Guess(rates, {})
+        matrix = np.array(rows)
+        weights = np.zeros(len(sides))
+        used = np.full(len(sides), True)
+        # Least squares with weights that are not negative: those that would be are left out.
+        while used.any():
+            weights[:] = 0.0
+            weights[used] = np.linalg.lstsq(matrix[:, :-1][:, used], matrix[:, -1], rcond=1e-9)[0]
+            if (weights >= 0.0).all():
+                break
+            used &= weights > 0.0
+        return _Guess(rates, dict(zip(sides, weights.tolist(), strict=True)))
+
+
+@dataclass(frozen=True)
+class _Guess:
+    rates: dict[tuple[int, int], float]
+    weights: dict[tuple[int, int], float]
+
+    def __call__(self, rung: Rung) -> float:
+        return sum(weight * _power(rung, at, self.rates) for at, weight in self.weights.items())
+
+
+def _power(rung: Rung, at: tuple[int, int], rates: dict[tuple[int, int], float]) -> float:
+    body, axis = at
+    return float(float(rung.divisions[body][axis]) ** -rates.get(at, 2.0))
+
+
+def _within(rung: Rung, other: Rung) -> bool:
+    """Tell whether a rung has no more elements along any side than another of its family."""
+    return rung.family == other.family and all(_count(rung, side) <= _count(other, side) for side in rung.sides())
+
+
+def _count(rung: Rung, side: tuple[int, int]) -> int:
+    body, axis = side
+    return rung.divisions[body][axis]
+
+
+def _rate(before: float, after: float) -> float | None:
+    if not 0 < before < np.inf or not 0 < after < np.inf:
+        return None
+    return float(np.log2(before / after))
+
+
+def _doubled(rung: Rung) -> Rung:
+    return replace(rung, divisions=tuple((2 * x, 2 * y) for x, y in rung.divisions))

@@ -1,0 +1,157 @@
+"""Errors in time: the cheapest methods and steps that keep them small, found on a coarse mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ancf.plan.errors import Values, distance, scales
+from ancf.plan.ladder import Choice, Rung, Stepping
+from ancf.plan.pilots import Pilot, Pilots
+from ancf.run import Dynamic, Method
+
+FIXED: tuple[Method, ...] = ("hht", "generalized_alpha", "energy_momentum", "esdirk")
+CONTROLLED: tuple[Method, ...] = ("esdirk", "verlet", "hht", "rk", "tr_bdf2")
+
+SHARE = 0.25
+"""Part of the tolerance that the error in time may take."""
+_REFERENCE = 0.1
+"""Error of the reference in time, relative to that."""
+_LOOSEST, _TIGHTEST = 0.1, 1e-11
+_FEWEST_STEPS = 12
+_ROUNDS = 9
+_PATIENCE = 1.2
+"""Times the cheapest adequate pilot after which another is given up."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """A stepping that is good enough on the coarse mesh.
+
+    Parameters
+    ----------
+    stepping : Stepping
+        Method and step.
+    error : float
+        Against the reference in time, relative.
+    pilot : Pilot
+        Its run.
+    """
+
+    stepping: Stepping
+    error: float
+    pilot: Pilot
+
+
+def reference(pilots: Pilots, rung: Rung, tol: float) -> Pilot:
+    """Run a rung with a small error in time.
+
+    Parameters
+    ----------
+    pilots : Pilots
+        Runs and remembers.
+    rung : Rung
+        A coarse one.
+    tol : float
+        Of the plan.
+
+    Returns
+    -------
+    Pilot
+        The most precise one that reached its end; not ok if none did.
+    """
+    size = _size(pilots)
+    first = pilots.run(Choice(rung, Stepping("esdirk", rtol=min(_LOOSEST, tol))), pilots.left / 6)
+    if not first.ok:
+        first = pilots.run(Choice(rung, Stepping("verlet", rtol=min(_LOOSEST, tol))), pilots.left / 6)
+    if not first.ok:
+        return first
+    scale = scales(first.values)
+    # Error control bounds what steps add to positions; velocities and strains need more care, so that the cheapest
+    # reference is refined until it does not change.
+    rtol = min(_LOOSEST, SHARE * _REFERENCE * tol * _relative(pilots, scale, size))
+    best, method = first, first.choice.stepping
+    assert method is not None
+    while pilots.left > 0:
+        finer = pilots.run(Choice(rung, replace(method, rtol=max(rtol, _TIGHTEST))), pilots.left / 4)
+        if not finer.ok:
+            return best
+        settled = distance(finer.values, best.values, scale) <= SHARE * tol
+        best = finer
+        if settled or rtol <= _TIGHTEST:
+            break
+        rtol /= 8
+    return best
+
+
+def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Timing]:
+    """Find for each method the longest steps, or loosest tolerance, whose error in time is small enough.
+
+    Parameters
+    ----------
+    pilots : Pilots
+        Runs and remembers.
+    rung : Rung
+        A coarse one.
+    exact : list of ndarray
+        The wanted quantities of this rung without error in time.
+    tol : float
+        Of the plan.
+
+    Returns
+    -------
+    list of Timing
+        Of each method that has one at no more than some times the cost of the cheapest, cheapest first.
+    """
+    scale = scales(exact)
+    found: list[Timing] = []
+    for ladder in (*_fixed(pilots), *_controlled(pilots, tol, scale)):
+        for stepping in ladder:
+            cheapest = min((timing.pilot.seconds for timing in found), default=np.inf)
+            # An explicit method may be cheaper on a fine mesh, where factorisations cost more than forces.
+            patience = 4.0 if stepping.explicit else _PATIENCE
+            pilot = pilots.run(Choice(rung, stepping), min(patience * cheapest + 0.02, pilots.left / 4))
+            if pilot.ok:
+                error = distance(pilot.values, exact, scale)
+                if error <= SHARE * tol:
+                    found.append(Timing(stepping, error, pilot))
+                    break
+            if pilots.left <= 0 or pilot.seconds > patience * cheapest + 0.02:
+                break
+    found.sort(key=lambda timing: timing.pilot.seconds)
+    if found and not found[0].stepping.explicit:
+        kept = replace(found[0].stepping, reuse=True)
+        pilot = pilots.run(Choice(rung, kept), found[0].pilot.seconds)
+        if pilot.ok and pilot.seconds < 0.9 * found[0].pilot.seconds:
+            error = distance(pilot.values, exact, scale)
+            if error <= SHARE * tol:
+                found.insert(0, Timing(kept, error, pilot))
+    return found
+
+
+def _fixed(pilots: Pilots) -> Iterator[Iterator[Stepping]]:
+    run = pilots.scene.run
+    assert isinstance(run, Dynamic)
+    for method in FIXED:
+        yield (Stepping(method, step=run.until / (_FEWEST_STEPS * 2**k)) for k in range(_ROUNDS))
+
+
+def _controlled(pilots: Pilots, tol: float, scale: list[float]) -> Iterator[Iterator[Stepping]]:
+    loose = min(_LOOSEST, tol * _relative(pilots, scale, _size(pilots)))
+    for method in CONTROLLED:
+        yield (Stepping(method, rtol=max(loose / 4**k, _TIGHTEST)) for k in range(_ROUNDS))
+
+
+def _size(pilots: Pilots) -> float:
+    """Return the size of the model at rest, m."""
+    q = pilots.scene.model.nodal_coordinates().reshape(-1, 3)
+    return float(np.ptp(q, axis=0).max())
+
+
+def _relative(pilots: Pilots, scale: list[float], size: float) -> float:
+    """Return the smallest scale of a wanted position, relative to the size of the model; 1 if none is wanted."""
+    kinds = {probe.name: probe.quantity for probe in pilots.scene.model.probes}
+    lengths = [s for name, s in zip(pilots.want, scale, strict=True) if kinds[name] in ("position", "displacement")]
+    return min([*(length / size for length in lengths), 1.0])

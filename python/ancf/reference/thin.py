@@ -1,0 +1,114 @@
+"""Thin elements: membrane strain and curvature of a surface; Dufva and Shabana (2005), section 3."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from .arrays import FloatArray, einsum
+from .element import Element
+from .energy import StrainEnergy
+from .quadrature import Rule, gauss, lobatto3, square
+from .strain import MEMBRANE, Curvature, StrainMeasure, normal
+
+MembraneRule: TypeAlias = Literal["full", "lobatto", "projected"]
+CurvatureKind: TypeAlias = Literal["paper", "koiter"]
+
+AREA_POWER: dict[CurvatureKind, int] = {"paper": 2, "koiter": 0}
+
+
+@dataclass(frozen=True)
+class Thin(Element):
+    """Thin elements: `thin36` with nodal vectors r, r_x, r_y, `thin48` with r_xy besides.
+
+    Attributes
+    ----------
+    membrane : {"projected", "full", "lobatto"}
+        Treatment of the membrane energy.
+    curvature : {"paper", "koiter"}
+        Power of the area stretch in the curvature.
+    """
+
+    membrane: MembraneRule = "projected"
+    curvature: CurvatureKind = "paper"
+
+    def table(self, points: FloatArray) -> FloatArray:
+        """N, N_x, N_y, N_xx, N_yy, N_xy, shape (p, 6, a)."""
+        return self.shape.table(points, self.l, self.w)
+
+    def director(self, edge: str, points: FloatArray) -> FloatArray:
+        """Table of the gradient across an edge, as the vectors at the edge's own nodes give it, shape (p, a).
+
+        For bicubic functions this is r_x (or r_y) itself. That of the incomplete quartic depends on the far nodes,
+        too: its part that is not linear along the edge is the same on both sides of an element, does no work on a
+        constant moment inside and must do none outside, or plates under constant moments bend too far.
+        """
+        across = "xy".index(edge[0])
+        twist = (self.shape.vectors == 1).all(axis=1).any()
+        return self.table(points)[:, 1 + across] if twist else self.nodal_values(1 + across, points)
+
+    def mass_points(self) -> tuple[FloatArray, FloatArray]:
+        """Table N of shape (s, a) at quadrature points, and the mass rho h dA there, kg, shape (elements, s)."""
+        rule = square(gauss(5))
+        return self.table(rule.points)[:, 0], self.material.density * self.thickness * self.area_weights(rule)
+
+    def energies(self) -> tuple[StrainEnergy, ...]:
+        """Membrane and bending energy."""
+        return self.membrane_energy(), self.bending_energy()
+
+    def area_weights(self, rule: Rule) -> FloatArray:
+        """Weights of a rule times the reference area sqrt(det A) dx dy, m2, shape (elements, samples)."""
+        return self.quadrature_weights(rule) * self._area(rule)
+
+    def membrane_energy(self) -> StrainEnergy:
+        """Membrane energy, with the rule that `membrane` names."""
+        rule = square(lobatto3() if self.membrane == "lobatto" else gauss(4))
+        energy = self._strain_energy(rule, MEMBRANE, self.thickness)
+        if self.membrane != "projected":
+            return energy
+        Pi = projection()
+        delta = np.minimum(1, (self.thickness / self._larger_side()) ** 2)
+        weight = (1 - delta) * Pi.T @ energy.weight @ Pi + delta * energy.weight
+        return StrainEnergy(energy.table, energy.measure, weight, energy.reference)
+
+    def bending_energy(self) -> StrainEnergy:
+        """Bending energy."""
+        rule = square(gauss(2 if self.membrane == "lobatto" else 3))
+        measure = Curvature(AREA_POWER[self.curvature], self._area(rule))
+        return self._strain_energy(rule, measure, self.thickness**3 / 12)
+
+    def _strain_energy(self, rule: Rule, measure: StrainMeasure, factor: float) -> StrainEnergy:
+        """Sample at the points of a rule, with the weight factor * D sqrt(det A) dx dy."""
+        weights = factor * self.area_weights(rule)
+        table = self.table(rule.points)[:, 1:]
+        return self.sampled(table, measure, MEMBRANE, self.material.plane_stress(), weights)
+
+    def _area(self, rule: Rule) -> FloatArray:
+        """|N| = |R_x x R_y| = sqrt(det A), shape (elements, samples)."""
+        return np.asarray(np.linalg.norm(normal(self._reference_vectors(rule)), axis=-1))
+
+    def _reference_vectors(self, rule: Rule) -> FloatArray:
+        """R_x, R_y and the second derivatives, shape (elements, samples, 5, 3)."""
+        return einsum("sva,eai->esvi", self.table(rule.points)[:, 1:], self.reference)
+
+    def _larger_side(self) -> FloatArray:
+        """Larger of the mean lengths of the element along x and along y, m, shape (elements, 1, 1)."""
+        rule = square(gauss(5))
+        lengths = np.linalg.norm(self._reference_vectors(rule)[..., :2, :], axis=-1)
+        sides = einsum("s,esv->ev", rule.weights, lengths) * [self.l, self.w]
+        return np.asarray(sides.max(axis=1)[:, None, None])
+
+
+def projection() -> FloatArray:
+    """L2 projection of the membrane strain, in the element's parameters, at the 4x4 Gauss points, shape (48, 48).
+
+    E_xx on P1(x) P3(y), E_yy on P3(x) P1(y), E_xy on P1(x) P1(y); rank 20.
+    """
+    rule = square(gauss(4))
+    samples = len(rule.weights)
+    Pi = np.zeros((samples, 3, samples, 3))
+    for component, (p, q) in enumerate([(1, 3), (3, 1), (1, 1)]):
+        basis = np.polynomial.legendre.legvander2d(2 * rule.points[:, 0] - 1, 2 * rule.points[:, 1] - 1, [p, q])
+        moments = basis.T * rule.weights
+        Pi[:, component, :, component] = basis @ np.linalg.solve(moments @ basis, moments)
+    return Pi.reshape(3 * samples, 3 * samples)
