@@ -9,7 +9,7 @@ import numpy as np
 
 from ancf.errors import InputError, Mistake
 from ancf.result import Record
-from ancf.run import Dynamic
+from ancf.run import Dynamic, Static
 from ancf.scene import Scene
 from ancf.sweep import Outcome, Variant
 
@@ -91,6 +91,7 @@ class Candidates:
             tight = {"method": "esdirk", "rtol": _TIGHTER * tightest}
             another = {"method": "tr_bdf2", "rtol": tightest}
         else:
+            assert isinstance(scene.run, Static)
             tight = {"tolerance": _TIGHT}
             another = {"tolerance": _TIGHT, "first_step": 0.25 * abs(scene.run.load_factors[0])}
         fine, coarse = {"mesh": _FINER * finest} | tight, {"mesh": finest} | tight

@@ -14,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from ancf.reproduce.dufva_shabana.paper import TABLE_1, TABLE_2, Seconds, pendulum
 from ancf.reproduce.dufva_shabana.runs import BEST_MOTION, BEST_STATIC, EXPLICIT, MODELS, SOLID, THIN, Runs
 from ancf.result import Result
+from ancf.scene import Scene
 from ancf.stage import Stage
 from ancf.sweep import Variant
 
@@ -91,7 +92,9 @@ def solve_shapes(number: int) -> dict[str, Result]:
     results = {}
     for name in (THIN, SOLID):
         document = Variant.of(pendulum(), **MODELS[name], divisions=[number, number], outputs=outputs).scene
-        results[name] = pendulum().of(document).solve(throw=False)
+        result = Scene.of(document).solve(throw=False)
+        assert isinstance(result, Result)
+        results[name] = result
     return results
 
 
@@ -119,7 +122,7 @@ def draw_shapes(results: Mapping[str, Result]) -> Figure:
             for t in (0.1, 0.2, 0.3):
                 part, state = next(parts), int(np.abs(result.t - t).argmin())
                 part.suptitle(f"{name}, t = {result.t[state]:.2g} s")
-                Stage(part, result, _FACETS).draw(state)
+                Stage(part, result.model, result.q, _FACETS).draw(state)
         return figure
 
 
