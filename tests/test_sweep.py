@@ -136,6 +136,7 @@ def test_timings_are_repeated(scene: ancf.Scene, tmp_path: Path) -> None:
     assert timing is not None
     assert len(timing.seconds) == 3
     assert timing.best == min(timing.seconds) <= timing.median
+    assert all(processor > 0 for processor in timing.processor)
     assert refused is None
     rows = [json.loads(line) for line in (tmp_path / "log.jsonl").read_text().splitlines()]
     assert sorted(row["repeat"] for row in rows) == [1, 1, 2, 2, 3, 3]
