@@ -75,7 +75,7 @@ def orders(quick: bool) -> None:
         loads=[ancf.Gravity(acceleration=(0.0, 0.0, -0.1))],
     )
     speed = np.zeros(36)
-    struck = [i for i in range(2, 36, 3) if 9 <= i < 27]
+    struck = [i for i in range(2, 36, 3) if i % 18 >= 9]
     speed[struck] = 1e-2 * np.sin(struck)
     cases: list[tuple[str, ancf.Model, float, dict[str, float], NDArray[np.float64] | None]] = [
         ("clamped plate, small vibration", clamped, 0.5, {"esdirk": 0.01, "rk": 0.005, "": 0.0025}, speed),
@@ -188,7 +188,7 @@ def conservation(quick: bool) -> None:
     step, steps = 1.5e-3, 2000 if quick else 100_000
 
     def rows() -> Iterable[Iterable[str]]:
-        for method in ("energy_momentum", "newmark", "hht", "generalized_alpha", "tr_bdf2", "esdirk"):
+        for method in ("energy_momentum", "newmark", "hht"):
             result = ancf.simulate(
                 model,
                 until=step * steps,

@@ -143,7 +143,12 @@ def test_a_hinge_alone_holds_nothing_in_statics(edit: Edit, tmp_path: Path, caps
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_interruption_keeps_the_results(edit: Edit, tmp_path: Path, number: signal.Signals) -> None:
-    scene = edit("pendulum.toml", ("until = 0.05", "until = 500"), ("outputs = [0.025, 0.05]", "every = 0.5"))
+    scene = edit(
+        "pendulum.toml",
+        ("until = 0.05", "until = 500"),
+        ("outputs = [0.025, 0.05]", "every = 0.5"),
+        ("step = 5e-3", "rtol = 1e-4"),
+    )
     folder = tmp_path / "out"
     command = [sys.executable, "-m", "ancf", "run", str(scene), "-o", str(folder)]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
@@ -159,6 +164,50 @@ def test_interruption_keeps_the_results(edit: Edit, tmp_path: Path, number: sign
     assert found["status"] == "interrupted"
     assert found["reached"] < 500
     assert (folder / "result.npz").exists()
+
+
+def start(arguments: list[str]) -> "subprocess.Popen[str]":
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    command = [sys.executable, "-m", "ancf", *arguments]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment)
+
+
+def wait_for(path: Path, run: "subprocess.Popen[str]") -> None:
+    while not path.exists() and run.poll() is None:
+        time.sleep(0.02)
+
+
+def test_an_interruption_twice_keeps_the_results(edit: Edit, tmp_path: Path) -> None:
+    scene = edit(
+        "pendulum.toml",
+        ("until = 0.05", "until = 500"),
+        ("outputs = [0.025, 0.05]", "every = 0.5"),
+        ("step = 5e-3", "rtol = 1e-4"),
+    )
+    folder = tmp_path / "out"
+    with start(["run", str(scene), "-o", str(folder)]) as run:
+        wait_for(folder, run)
+        time.sleep(0.5)
+        for _ in range(20):
+            run.send_signal(signal.SIGINT)
+            time.sleep(0.01)
+        _, told = run.communicate(timeout=30)
+    assert run.returncode == 130
+    assert "Traceback" not in told
+    assert summary(folder)["status"] == "interrupted"
+
+
+def test_an_interruption_while_the_film_is_made(edit: Edit, tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    scene = edit("pendulum.toml", ("outputs = [0.025, 0.05]", "every = 5e-4"))
+    with start(["run", str(scene), "-o", str(folder), "--animate", "--quiet"]) as run:
+        wait_for(folder / "summary.json", run)
+        time.sleep(1.5)
+        run.send_signal(signal.SIGINT)
+        _, told = run.communicate(timeout=30)
+    assert run.returncode == 130
+    assert told == "ancf: interrupted\n"
+    assert sorted(path.name for path in folder.iterdir()) == ["result.npz", "summary.json"]
 
 
 def test_info(capsys: pytest.CaptureFixture[str]) -> None:

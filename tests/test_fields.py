@@ -55,9 +55,9 @@ def test_a_second_run_leaves_nothing_of_the_first(pendulum: ancf.Model, tmp_path
 
 def test_shapes_of_modes(tmp_path: Path) -> None:
     steel = ancf.Material(E=2e11, nu=0.3, density=7800.0)
-    body = {"divisions": (2, 1), "thickness": 0.01, "material": steel}
-    shell = ancf.Cylinder(radius=1, angle=(0, 1), length=(0, 1), **body)
-    model = ancf.Model(bodies={"plate": ancf.Rectangle(size=(1, 0.5), **body), "shell": shell})
+    plate = ancf.Rectangle(size=(1, 0.5), divisions=(2, 1), thickness=0.01, material=steel)
+    shell = ancf.Cylinder(radius=1, angle=(0, 1), length=(0, 1), divisions=(2, 1), thickness=0.01, material=steel)
+    model = ancf.Model(bodies={"plate": plate, "shell": shell})
     found = ancf.modes(model, count=14)
     found.write_fields(tmp_path / "modes.pvd", subdivisions=2)
     states = read(tmp_path / "modes.pvd")

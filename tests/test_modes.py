@@ -66,7 +66,8 @@ def test_dense_eigenvalues_are_the_same() -> None:
     def dense(triplets: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
         rows, columns, values = triplets
         matrix = coo_array((values, (rows.astype(int), columns.astype(int))), shape=(n, n)).toarray()
-        return matrix[np.ix_(free, free)]
+        part: np.ndarray = matrix[np.ix_(free, free)]
+        return part
 
     q = model.nodal_coordinates()
     expected, vectors = eigh(dense(core.tangent(q)), dense(core.mass()))
@@ -194,3 +195,10 @@ def test_mistakes_in_a_scene(tmp_path: Path, edit: Callable[..., Path]) -> None:
     scene.write_text(SCENE.replace("count = 8", "count = 500"))
     with pytest.raises(ancf.InputError, match=r"run\.count = 500: must not be greater than 90"):
         ancf.load_scene(scene)
+
+
+def test_modes_are_not_swept(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = tmp_path / "scene.toml"
+    scene.write_text(SCENE + '[[probe]]\nname = "A"\nat = [1, 0.1]\n')
+    assert main(["chart", str(scene), "-o", str(tmp_path / "out")]) == 2
+    assert 'run.kind = "modes": must be static or dynamic' in capsys.readouterr().err

@@ -47,7 +47,12 @@ PENDULUM = [
     ("-9.81]", "-9.81]\nhistory = [[1, 0], [0, 1]]", "load.0.history = [[1, 0], [0, 1]]: the t of", "must increase"),
     ("at = [0.3, 0.3]", "at = [0.3, 0.4]", "probe.0.at = [0.3, 0.4]:", "0.3"),
     ('"position"', '"colour"', 'probe.0.quantity = "colour": allowed are position, displacement,', ""),
-    ('kind = "dynamic"', 'kind = "modes"', 'run.kind = "modes": allowed are static, dynamic', ""),
+    (
+        'kind = "dynamic"',
+        'kind = "mode"',
+        'run.kind = "mode": allowed are static, dynamic, modes; did you mean modes?',
+        "",
+    ),
     ('"hht"', '"euler"', 'run.method = "euler": allowed are hht, generalized_alpha, newmark, tr_bdf2, esdirk', ""),
     ("step = 5e-3", "", "run.step: give either step, for fixed steps, or rtol, for error control", ""),
     ("step = 5e-3", "step = 5e-3\nrtol = 1e-4", "run.step = 0.005: give either step", ""),

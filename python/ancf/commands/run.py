@@ -12,7 +12,6 @@ from ancf.commands.plan import add_options, make_plan
 from ancf.commands.signals import deferred_signals
 from ancf.errors import InputError, Interrupted, Mistake
 from ancf.fields import check_fields
-from ancf.film import check_film
 from ancf.modal import ModalResult
 from ancf.output import FIELDS, PICTURE, make_folder, remove_extras, remove_folders, replacing, write_result
 from ancf.report import describe
@@ -51,6 +50,8 @@ def call(options: argparse.Namespace) -> int:
     scene = load_scene(options.scene)
     film = None if options.animate is None else folder / f"motion.{options.animate}"
     if film is not None:
+        from ancf.film import check_film  # noqa: PLC0415  Matplotlib takes longer to import than most scenes to run.
+
         check_film(film)
     if options.fields:
         check_fields(folder / FIELDS)

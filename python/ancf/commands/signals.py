@@ -7,15 +7,17 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
 _received = False
 _deferred = False
 
 
 def watch_signals() -> None:
-    """Let the first signal raise `KeyboardInterrupt`; while the command ends on it, further ones change nothing."""
+    """Let the first signal raise `KeyboardInterrupt`, and ignore those that follow: the command ends on it."""
     global _received  # noqa: PLW0603  A process has one state of its signals.
     _received = False
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in _SIGNALS:
         signal.signal(number, _receive)
 
 
@@ -38,7 +40,9 @@ def deferred_signals() -> Iterator[None]:
 
 
 def _receive(_number: int, _frame: FrameType | None) -> None:
-    global _received
-    again, _received = _received, True
-    if not again and not _deferred:
+    global _received  # noqa: PLW0603  As above.
+    _received = True
+    for number in _SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    if not _deferred:
         raise KeyboardInterrupt

@@ -11,8 +11,9 @@ from typing import Any
 
 from ancf import _core
 from ancf.bodies import Rectangle
+from ancf.errors import InputError, Mistake, show
 from ancf.materials import Material
-from ancf.run import Dynamic, Static
+from ancf.run import Dynamic, Modes, Static
 from ancf.scene import Scene
 
 _OF_BODIES = ("element", "membrane", "curvature", "thickness", "divisions")
@@ -78,8 +79,10 @@ class Variant:
         Raises
         ------
         InputError
-            If a body is a `Surface`.
+            If a body is a `Surface`, or the scene is run for its modes.
         """
+        if isinstance(scene.run, Modes):
+            raise InputError(Mistake(("run", "kind"), "must be static or dynamic to be compared", show("modes")))
         document = deepcopy(scene.document())
         for name, value in settings.items():
             if name == "mesh":

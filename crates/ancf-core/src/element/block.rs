@@ -292,10 +292,17 @@ impl<const N: usize> WithSimd for Task<'_, N> {
             }
 
             let current = gather(simd, &block.vectors, members, at.q);
-            let start = at.start.map(|q| gather(simd, &block.vectors, members, q));
+            let [mut start, mut velocity, mut previous] = [const { None }; 3];
+            if let Some(q) = at.start {
+                start = Some(gather(simd, &block.vectors, members, q));
+            }
             let motion = at.motion.filter(|_| block.flows(at));
-            let velocity = motion.map(|motion| gather(simd, &block.vectors, members, motion.velocity));
-            let previous = want.and_then(|w| w.previous).map(|p| gather(simd, &block.vectors, members, p));
+            if let Some(motion) = motion {
+                velocity = Some(gather(simd, &block.vectors, members, motion.velocity));
+            }
+            if let Some(q) = want.and_then(|want| want.previous) {
+                previous = Some(gather(simd, &block.vectors, members, q));
+            }
             let mut totals = Totals::<S, N>::new(simd);
             if let Some(combined) = &mut combined {
                 combined.clear(simd);

@@ -228,10 +228,11 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
         reference.copy_from_slice(&constants[1..1 + C]);
         let mut gradients = patch.gradients::<S, D>(point, self.current);
         let mut strain = M::new(law, gradients, area).strain();
-        let mut extrapolated = self.previous.filter(|_| with_tangent).map(|previous| {
+        let mut extrapolated = None;
+        if let (Some(previous), true) = (self.previous, with_tangent) {
             let before = patch.gradients::<S, D>(point, previous);
-            extrapolated::<S, M, D, C>(law, area, gradients, before)
-        });
+            extrapolated = Some(self::extrapolated::<S, M, D, C>(law, area, gradients, before));
+        }
         let (mut rate, mut missed) = ([zero; C], [zero; C]);
         if let Some(start) = self.start {
             let first = patch.gradients::<S, D>(point, start);
@@ -241,10 +242,14 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
             let first = M::new(law, first, area).strain();
             missed = difference(strain, first);
             strain = mean(strain, first);
-            extrapolated = extrapolated.map(|extrapolated| mean(extrapolated, first));
+            if let Some(extrapolated) = &mut extrapolated {
+                *extrapolated = mean(*extrapolated, first);
+            }
         }
         strain = difference(strain, reference);
-        extrapolated = extrapolated.map(|extrapolated| difference(extrapolated, reference));
+        if let Some(extrapolated) = &mut extrapolated {
+            *extrapolated = difference(*extrapolated, reference);
+        }
         if let Some(flow) = self.flow {
             rate = M::new(law, gradients, area).change(&patch.gradients::<S, D>(point, flow.velocity));
             for c in 0..C {

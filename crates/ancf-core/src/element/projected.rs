@@ -42,27 +42,26 @@ pub(super) fn add<S: Simd, const N: usize>(
         (strain[g], rate[g], missed[g]) = (at[g].strain, at[g].rate, at[g].missed);
         extrapolated[g] = at[g].extrapolated.unwrap_or(strain[g]);
     }
-    let amplitudes = |strain: &[[Lanes<S>; C]; POINTS]| self::amplitudes(zero, projection, strain);
-    let conjugates = |amplitudes: &[Lanes<S>; MODES]| conjugates(zero, batch.couplings, weights, amplitudes);
-    let strain = amplitudes(&strain);
-    let mut stress = conjugates(&strain);
+    let couplings = batch.couplings;
+    let strain = amplitudes(zero, projection, &strain);
+    let mut stress = conjugates(zero, couplings, weights, &strain);
     for k in 0..MODES {
         totals.energy[0] = (stress[k] * 0.5).mul_add(strain[k], totals.energy[0]);
     }
     if let Some(flow) = batch.flow {
-        let rate = amplitudes(&rate);
-        let viscous = conjugates(&rate);
-        totals.add_rates(&stress, &viscous, &rate, &amplitudes(&missed));
+        let rate = amplitudes(zero, projection, &rate);
+        let viscous = conjugates(zero, couplings, weights, &rate);
+        totals.add_rates(&stress, &viscous, &rate, &amplitudes(zero, projection, &missed));
         for k in 0..MODES {
             stress[k] = viscous[k].scale_add(flow.factor, stress[k]);
         }
     }
 
-    let at_points = |stress: &[Lanes<S>; MODES]| at_points(zero, projection, stress);
-    let on_points = at_points(&stress);
+    let on_points = at_points(zero, projection, &stress);
     let mut geometric = on_points;
     if with_tangent && batch.previous.is_some() {
-        geometric = at_points(&conjugates(&amplitudes(&extrapolated)));
+        let strain = amplitudes(zero, projection, &extrapolated);
+        geometric = at_points(zero, projection, &conjugates(zero, couplings, weights, &strain));
     }
     let mut forces = [[zero; 3]; MOST_GRADIENTS];
     let mut tangent = tangent;
@@ -79,7 +78,7 @@ pub(super) fn add<S: Simd, const N: usize>(
         for g in 0..POINTS {
             vectors[2 * g..2 * g + 2].copy_from_slice(&at[g].gradients);
         }
-        add_material(zero, projection, batch.couplings, weights, &vectors, tangent);
+        add_material(zero, projection, couplings, weights, &vectors, tangent);
     }
 }
 

@@ -140,8 +140,30 @@ impl Newton {
         self.iterate(system, *problem, Some(normal), q, last, observer)
     }
 
+    /// Iterates with the factorisation that is kept, if reuse is wanted; should that fail, without it.
     fn iterate(
         &mut self,
+        system: &mut System,
+        problem: Problem<'_>,
+        normal: Option<&[f64]>,
+        q: &mut [f64],
+        last: Option<&[f64]>,
+        observer: &dyn Observer,
+    ) -> Result<Report, Failure> {
+        let reuse = self.options.reuse;
+        match self.attempt(reuse, system, problem, normal, q, last, observer) {
+            Err(failure) if reuse && !matches!(failure, Failure::Stopped | Failure::TooLarge) => {
+                q.copy_from_slice(&self.begin);
+                self.attempt(false, system, problem, normal, q, last, observer)
+            }
+            end => end,
+        }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "those of `iterate`, and how")]
+    fn attempt(
+        &mut self,
+        mut reuse: bool,
         system: &mut System,
         mut problem: Problem<'_>,
         normal: Option<&[f64]>,
@@ -149,7 +171,7 @@ impl Newton {
         last: Option<&[f64]>,
         observer: &dyn Observer,
     ) -> Result<Report, Failure> {
-        let Options { variant, tolerance, max_iterations, reuse } = self.options;
+        let Options { variant, tolerance, max_iterations, .. } = self.options;
         let mip = variant == Variant::MixedIntegrationPoint;
         let mut extrapolate = false;
         if let (Some(last), true) = (last, mip) {
@@ -195,16 +217,18 @@ impl Newton {
                 q.copy_from_slice(&self.begin);
                 problem.t = begin;
                 self.forces.begin(&problem, q);
-                (self.kept, extrapolate) = (None, false);
+                (self.kept, extrapolate, reuse) = (None, false, false);
                 convergence.restart();
                 continue;
             }
-            let useful = fresh || convergence.contracts(size);
+            // One that did not serve shows that the solution is far: from here on each iteration has its own.
+            reuse &= fresh || convergence.contracts(size);
             let converged = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
             self.previous.copy_from_slice(q);
             self.forces.correct(&self.correction, q);
             extrapolate = mip;
-            self.kept = (reuse && useful).then_some(Kept { coefficients, negative });
+            let keep = reuse || converged && self.options.reuse;
+            self.kept = keep.then_some(Kept { coefficients, negative });
             if converged {
                 // The energy was evaluated one correction before the solution.
                 let energy = strain.total() - dot(&self.correction, &self.forces.internal);

@@ -30,19 +30,32 @@ impl<S: Simd> Measure<S, 3, 6> for GreenLagrange<S> {
 
     #[inline(always)]
     fn strain(&self) -> [Lanes<S>; 6] {
-        SOLID_PAIRS.map(|(a, b)| dot(self.gradients[a], self.gradients[b]) * if a == b { 0.5 } else { 1.0 })
+        let r = &self.gradients;
+        let mut strain = [r[0][0]; 6];
+        for (c, (a, b)) in SOLID_PAIRS.into_iter().enumerate() {
+            strain[c] = dot(r[a], r[b]) * if a == b { 0.5 } else { 1.0 };
+        }
+        strain
     }
 
     #[inline(always)]
     fn change(&self, d: &[Vector<S>; 3]) -> [Lanes<S>; 6] {
         let r = &self.gradients;
-        SOLID_PAIRS.map(|(a, b)| if a == b { dot(r[a], d[a]) } else { dot(r[a], d[b]) + dot(r[b], d[a]) })
+        let mut change = [r[0][0]; 6];
+        for (c, (a, b)) in SOLID_PAIRS.into_iter().enumerate() {
+            change[c] = if a == b { dot(r[a], d[a]) } else { dot(r[a], d[b]) + dot(r[b], d[a]) };
+        }
+        change
     }
 
     #[inline(always)]
     fn forces(&self, stress: [Lanes<S>; 6]) -> [Vector<S>; 3] {
         let r = &self.gradients;
-        COMPONENT.map(|[x, y, z]| axpy(stress[x], r[0], axpy(stress[y], r[1], scale(stress[z], r[2]))))
+        let mut forces = *r;
+        for (d, [x, y, z]) in COMPONENT.into_iter().enumerate() {
+            forces[d] = axpy(stress[x], r[0], axpy(stress[y], r[1], scale(stress[z], r[2])));
+        }
+        forces
     }
 
     /// The strain `de` changes with the gradient `r_d` by `r_e`.
