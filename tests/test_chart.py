@@ -177,6 +177,27 @@ def test_a_statics_scene_and_runs_that_are_refused(scenes: Path, tmp_path: Path)
     assert "allowed are thin36" in (tmp_path / "chart.md").read_text(encoding="utf-8")
 
 
+def test_a_claimed_error_holds_against_a_closed_form(tmp_path: Path) -> None:
+    """A strip bent to half a circle by a moment: its end moves by (-L, 0, 2 L / pi)."""
+    L, h, E = 10.0, 0.01, 1.2e6
+    strip = ancf.Rectangle(size=(L, 1.0), divisions=(8, 1), thickness=h, material=ancf.Material(E=E, nu=0.0))
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.Moment(at="edge:x1", per_length=np.pi / L * E * h**3 / 12)],
+        probes=[ancf.Probe(name="end", at=(L, 0.5), quantity="displacement")],
+    )
+    scene = ancf.Scene("Strip", model, ancf.Static())
+    axes: dict[str, Any] = {"element": ["thin36"], "mesh": [0.5, 1.0]}
+    chart = measure(scene, axes, tmp_path / "log.jsonl", budget=60, repeats=1)
+    exact = np.array([-L, 0.0, 2 * L / np.pi])
+    assert chart.reference.trust < 0.02
+    for found in chart.points:
+        value = solve(ancf.Scene.of(dict(found.scene))).probes["end"].value[-1]
+        error = np.linalg.norm(value - exact) / np.linalg.norm(exact)
+        assert abs(found.error - error) <= chart.reference.trust
+
+
 def test_what_there_is_no_time_for_is_listed(scenes: Path, tmp_path: Path) -> None:
     scene = ancf.load_scene(scenes / "cantilever.toml")
     axes: dict[str, Any] = {"mesh": [0.5, 1.0], "tolerance": [1e-8 / (k + 1) for k in range(40)]}

@@ -107,7 +107,7 @@ def with_few_outputs(scene: Scene) -> Scene:
         outputs = [run.until * (index + 1) / _OUTPUTS for index in range(_OUTPUTS)]
         run = Dynamic(**{key: value for key, value in run if key not in ("outputs", "every")}, outputs=outputs)
     elif isinstance(run, Modes):
-        raise InputError(Mistake(("run", "kind"), "must be dynamic or static: charts show probes", show("modes")))
+        raise InputError(Mistake(("run", "kind"), "must be static or dynamic: charts show probes", show("modes")))
     elif run.path == "arc":
         raise InputError(Mistake(("run", "path"), "charts compare states at equal load factors", show("arc")))
     return Scene(scene.title, scene.model, run, scene.material_names)
