@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 from ancf.plan.report import Plan
 from ancf.probes import QUANTITIES
@@ -37,6 +38,10 @@ def draw(plan: Plan) -> Figure:
         if row.error:
             left.loglog(row.seconds, row.error, "o", markersize=11, fillstyle="none", color="black", label="chosen")
         left.axhline(plan.tol, color="gray", linewidth=1)
+        for axis in (left.xaxis, left.yaxis):
+            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))
+            axis.set_major_formatter(lambda value, _: f"{value:g}")
+            axis.set_minor_locator(NullLocator())
         left.set_xlabel("time of the run / s")
         left.set_ylabel("estimated error, relative")
         left.legend(fontsize="small", frameon=False)

@@ -10,13 +10,15 @@ import numpy as np
 
 from ancf.errors import InputError, Mistake, Mistakes, one_of, show
 from ancf.model import Model
-from ancf.plan.cost import calibrated
+from ancf.plan.cost import Costs, calibrated
 from ancf.plan.errors import Values, distance, scales
 from ancf.plan.ladder import RIGID, Choice, Family, Rung, Stepping, apply, coarsest, families
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.report import Plan, Row
 from ancf.plan.rigid import deflection
 from ancf.plan.search import Search
+from ancf.plan.shear import told
+from ancf.plan.symmetry import doubled, halved
 from ancf.plan.timing import SHARE, Timing, reference, steppings
 from ancf.result import Result
 from ancf.run import Dynamic, Static
@@ -27,6 +29,8 @@ BUDGET = 300.0
 """Seconds that a plan may take if nothing is said."""
 _RIGID_SHARE = 0.5
 """Part of the tolerance below which the estimated deflection of a rigid body is no matter."""
+_SYMMETRIC = 0.2
+"""Part of the tolerance that the whole of a symmetric scene may be off its half."""
 _CHECKS = 3
 
 
@@ -76,25 +80,47 @@ def plan(
     _check(scene, tol, budget)
     costs = calibrated()
     pilots = Pilots(scene, names, budget, threads)
-    allowed = families(scene.model)
-    base = coarsest(scene.model)
-    rigid: Pilot | None = None
-    bent: list[float] = []
-    timings: list[Timing] = []
     if isinstance(scene.run, Dynamic):
-        rigid, bent = _rigid(pilots, base, allowed[0], tol)
+        rigid, bent = _rigid(pilots, coarsest(scene.model), families(scene.model)[0], tol)
         if rigid is not None and max(bent) <= _RIGID_SHARE * tol:
             return _as_rigid(scene, pilots, rigid, max(bent), tol)
-        timings = _timings(pilots, allowed, base, tol)
+    part, mirrors = halved(scene)
+    if mirrors:
+        found = _flexible(Pilots(part, names, pilots.left / 2, threads), costs, tol)
+        off = _asymmetry(pilots, found, mirrors)
+        if off <= _SYMMETRIC * tol:
+            sides = " and ".join("xy"[axis] for axis in mirrors)
+            reason = f"The scene is symmetric across the middle of {sides}: the low half is enough, to {off:.1g}."
+            return replace(found, reasons=[*found.reasons, reason], seconds=pilots.spent)
+    return _flexible(pilots, costs, tol)
+
+
+def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float:
+    """Return how far the whole is from its part with the same elements, relative: it may buckle to one side."""
+    choice = found.settings
+    rung = replace(choice.rung, divisions=doubled(choice.rung.divisions, mirrors))
+    whole = pilots.run(replace(choice, rung=rung))
+    if not whole.ok:
+        return np.inf
+    values = [found.result.probes[name].value for name in pilots.want]
+    return distance(whole.values, values, scales(values))
+
+
+def _flexible(pilots: Pilots, costs: Costs, tol: float) -> Plan:
+    """Plan a scene whose bodies deform."""
+    scene = pilots.scene
+    allowed = families(scene.model)
+    base = coarsest(scene.model)
+    timings = _timings(pilots, allowed, base, tol) if isinstance(scene.run, Dynamic) else []
     search = Search(pilots, costs, allowed, base, tol, timings)
     first = _first_family(search)
     if first is None or not search.up(first):
         raise InputError(Mistake(("scene",), f"no pilot reached its end: {_last_words(pilots)}"))
-    scale = _scales(search.exact, names)
+    scale = _scales(search.exact, pilots.want)
     search.down()
     chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
     in_space = search.observed()[chosen.choice]
-    chosen, in_time = _check_time(search, chosen, scale)
+    chosen, in_time = _check_time(search, chosen, scale, search.tol - in_space)
     return _report(search, chosen, in_space, in_time, scale)
 
 
@@ -186,7 +212,7 @@ def _as_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: floa
     return Plan(
         scene=chosen,
         result=_result(pilot),
-        choice=str(pilot.choice),
+        settings=pilot.choice,
         tol=tol,
         scale=scale,
         error=bent,
@@ -219,24 +245,35 @@ def _timings(
 
 
 def _first_family(search: Search) -> Family | None:
-    """Return the family that changes least when the coarsest meshes are refined."""
-    best: tuple[float, Family] | None = None
+    """Return the family that changes least when the coarsest mesh is refined, and then agrees best with another.
+
+    Agreement matters because what locks hardly changes either.
+    """
+    coarse: dict[Family, Values] = {}
+    fine: dict[Family, Values] = {}
     cheapest = search.pilots.left / 8
     for family in search.families:
-        coarse = Rung(family, search.base)
-        fine = Rung(family, tuple((2 * x, 2 * y) for x, y in search.base))
-        pilots = [search.run(rung, 3 * cheapest + 0.02) for rung in (coarse, fine)]
-        if pilots[1].ok:
-            cheapest = min(cheapest, pilots[1].seconds)
-            change = np.inf
-            if pilots[0].ok:
-                change = distance(pilots[0].values, pilots[1].values, scales(pilots[1].values))
-            if best is None or change < best[0]:
-                best = change, family
-    return best[1] if best else None
+        for factor, values in ((1, coarse), (2, fine)):
+            rung = Rung(family, tuple((factor * x, factor * y) for x, y in search.base))
+            pilot = search.run(rung, 3 * cheapest + 0.02)
+            if pilot.ok:
+                values[family] = pilot.values
+        if family in fine:
+            _scales(fine[family], search.pilots.want)
+            cheapest = min(cheapest, pilot.seconds)
+    if not fine:
+        return None
+    scale = [max(sizes) for sizes in zip(*(scales(values) for values in fine.values()), strict=True)]
+
+    def doubt(family: Family) -> float:
+        change = distance(coarse[family], fine[family], scale) if family in coarse else 1.0
+        others = [distance(fine[family], values, scale) for other, values in fine.items() if other != family]
+        return change + min(others, default=0.0)
+
+    return min(fine, key=doubt)
 
 
-def _check_time(search: Search, chosen: Pilot, scale: Sequence[float]) -> tuple[Pilot, float]:
+def _check_time(search: Search, chosen: Pilot, scale: Sequence[float], allowed: float) -> tuple[Pilot, float]:
     """Repeat the choice with tighter steps until they no longer matter; return it with its error in time, relative."""
     error = 0.0
     for _ in range(_CHECKS):
@@ -247,7 +284,7 @@ def _check_time(search: Search, chosen: Pilot, scale: Sequence[float]) -> tuple[
         if not tight.ok:
             break
         error = distance(tight.values, chosen.values, scale)
-        if error <= 2 * SHARE * search.tol:
+        if error <= max(allowed, SHARE * search.tol):
             break
         chosen = tight
     return chosen, error
@@ -262,7 +299,7 @@ def _report(
 ) -> Plan:
     pilots, tol, finest = search.pilots, search.tol, search.best
     errors = search.observed()
-    converged = in_space <= tol and in_time <= tol / 2
+    converged = in_space + in_time <= tol
     reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.1g}."]
     if chosen.choice.rung == finest:
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
@@ -286,6 +323,7 @@ def _report(
         reasons.append(
             f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.1g}."
         )
+    reasons += told(pilots.scene.model, tol)
     rows = [
         Row(
             str(p.choice),
@@ -301,7 +339,7 @@ def _report(
     return Plan(
         scene=apply(pilots.scene, chosen.choice),
         result=_result(chosen),
-        choice=str(chosen.choice),
+        settings=chosen.choice,
         tol=tol,
         scale=dict(zip(pilots.want, scale, strict=True)),
         error=in_space,

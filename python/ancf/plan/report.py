@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ancf.output import replacing
+from ancf.plan.ladder import Choice
 from ancf.result import Result
 from ancf.scene import Scene
 
@@ -52,8 +53,8 @@ class Plan:
         With the chosen settings, ready to be run or written.
     result : Result
         The run of it, which was one of the pilots.
-    choice : str
-        The settings in words.
+    settings : Choice
+        What was chosen.
     tol : float
         The tolerance.
     scale : dict of str to float
@@ -78,7 +79,7 @@ class Plan:
 
     scene: Scene = field(repr=False)
     result: Result = field(repr=False)
-    choice: str
+    settings: Choice = field(repr=False)
     tol: float
     scale: dict[str, float]
     error: float
@@ -90,6 +91,11 @@ class Plan:
     seconds: float
     predicted_seconds: float
     threads: int | None
+
+    @property
+    def choice(self) -> str:
+        """The settings in words."""
+        return str(self.settings)
 
     def __str__(self) -> str:
         return "\n".join(self._lines())
@@ -115,8 +121,9 @@ class Plan:
 
     def document(self) -> dict[str, Any]:
         """Return the numbers of the plan as plain values, as in plan.json."""
-        names = [n for n in self.__dataclass_fields__ if n not in ("scene", "result", "rows")]
-        return {name: getattr(self, name) for name in names} | {"rows": [asdict(row) for row in self.rows]}
+        names = [n for n in self.__dataclass_fields__ if n not in ("scene", "result", "settings", "rows")]
+        numbers = {name: getattr(self, name) for name in names}
+        return {"choice": self.choice} | numbers | {"rows": [asdict(row) for row in self.rows]}
 
     def plot(self) -> Figure:
         """Draw errors over costs of what was tried, and what is wanted of the choice.

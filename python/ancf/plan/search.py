@@ -13,12 +13,10 @@ from ancf.plan.cost import Costs
 from ancf.plan.errors import RATES, Side, Values, distance, scales
 from ancf.plan.ladder import COUNTS, RIGID, Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
-from ancf.plan.timing import Timing
+from ancf.plan.timing import SHARE, Timing
 
-BEST = 0.4
+BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
-ACCEPT = 0.8
-"""Part of the tolerance that the estimated error of the choice may reach."""
 _DOMINANT = 0.4
 """A side is refined if its error is at least this part of the largest."""
 _SMALL_SIDE = 0.05
@@ -41,6 +39,10 @@ _STALLED = 0.4
 """Rate of convergence that counts as no better."""
 _AGREED = 0.6
 """Part of the tolerance up to which another element on the finest mesh may be off."""
+_DOWN = 0.4
+"""Time for each part of the way down, relative to the time before."""
+_HOPE = 5.0
+"""Errors, relative to the tolerance, that may be too large only by the model that guesses them."""
 _LARGEST = 20_000
 """Elements of the finest rung."""
 
@@ -81,6 +83,11 @@ class Search:
     def __post_init__(self) -> None:
         """Allow the steppings that are good enough; those that replace them are allowed later."""
         self.allowed = [timing.stepping for timing in self.timings]
+
+    @property
+    def allowance(self) -> float:
+        """The error in space that the choice may have: in motion a share is left for that in time."""
+        return (1.0 - SHARE if self.timings else 1.0) * self.tol
 
     def stepping(self, rung: Rung) -> Stepping | None:
         """Return the stepping that is predicted to be the cheapest on a rung; None in statics."""
@@ -250,15 +257,48 @@ class Search:
         return rung if any(side.error > _SMALL_SIDE * self.tol for side in self.sides.values()) else _doubled(rung)
 
     def down(self) -> None:
-        """Look for cheaper rungs below the finest."""
+        """Look for cheaper rungs below the finest: first those that promise most, then all that might do, cheap first.
+
+        Errors of coarse rungs can cancel, so that one is better than what a finer one of its family lets expect.
+        """
         start = self.pilots.spent
         for _ in range(_TRIALS):
-            current = self.cheapest(self.observed())
-            limit = np.inf if current is None else current.seconds
+            limit = self._limit()
             trial = self._trial(limit)
-            if trial is None or self.pilots.spent - start > max(start, 0.1):
+            if trial is None or self.pilots.spent > (1 + _DOWN) * start:
                 break
             self.run(trial, 1.5 * limit + 0.02)
+        start = self.pilots.spent
+        for cost, rung in self._cheap():
+            limit = self._limit()
+            if cost > _WORTH * limit or self.pilots.spent > (1 + _DOWN) * start:
+                break
+            self.run(rung, limit + 0.02)
+        self._lengthen()
+
+    def _lengthen(self) -> None:
+        """Try on the cheapest rung the longer steps that finer or other rungs could not be solved with."""
+        current = self.cheapest(self.observed())
+        for stepping in self.allowed if current is not None else []:
+            assert current is not None
+            if stepping != current.choice.stepping:
+                self.pilots.run(replace(current.choice, stepping=stepping), _WORTH * self._limit())
+
+    def _limit(self) -> float:
+        current = self.cheapest(self.observed())
+        return np.inf if current is None else current.seconds
+
+    def _cheap(self) -> list[tuple[float, Rung]]:
+        """Return the rungs that were not run and might be good enough, with their predicted costs, cheapest first."""
+        tried = {pilot.choice.rung for pilot in self.pilots.done}
+        found = []
+        for family in self.families:
+            guess = self._guess(family)
+            for rung in self._below(family):
+                cost = self.predict(rung)
+                if rung not in tried and cost is not None and guess(rung) <= _HOPE * self.tol:
+                    found.append((cost, rung))
+        return sorted(found, key=lambda pair: pair[0])
 
     def observed(self) -> dict[Choice, float]:
         """Return the error of every pilot that reached its end: its distance to `exact` and what that lacks."""
@@ -273,7 +313,7 @@ class Search:
         fits = [
             pilot
             for choice, error in errors.items()
-            if error <= ACCEPT * self.tol
+            if error <= self.allowance
             and choice.stepping in allowed
             and (pilot := self.pilots.known(choice)) is not None
         ]
@@ -285,7 +325,7 @@ class Search:
         done = [pilot for pilot in self.pilots.done if pilot.ok]
         tried = {pilot.choice.rung for pilot in self.pilots.done}
         errors = self.observed()
-        poor = [pilot.choice.rung for pilot in done if errors[pilot.choice] > ACCEPT * self.tol]
+        poor = [pilot.choice.rung for pilot in done if errors[pilot.choice] > self.allowance]
         for family in self.families:
             guess = self._guess(family)
             for rung in self._below(family):
@@ -295,7 +335,7 @@ class Search:
                 cost = self.predict(rung)
                 if cost is None or cost > _WORTH * limit or cost > self.pilots.left:
                     continue
-                likely = 1.0 / (1.0 + ((guess(rung) + self.own) / (ACCEPT * self.tol)) ** 4)
+                likely = 1.0 / (1.0 + ((guess(rung) + self.own) / (self.allowance)) ** 4)
                 saving = likely * (1.0 - cost / limit if np.isfinite(limit) else 1.0)
                 if likely > _LIKELY and (found is None or saving > found[0]):
                     found = saving, rung

@@ -131,17 +131,17 @@ def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Tim
     return found
 
 
-def _fixed(pilots: Pilots) -> Iterator[Iterator[Stepping]]:
+def _fixed(pilots: Pilots) -> Iterator[list[Stepping]]:
     run = pilots.scene.run
     assert isinstance(run, Dynamic)
     for method in FIXED:
-        yield (Stepping(method, step=run.until / (_FEWEST_STEPS * 2**k)) for k in range(_ROUNDS))
+        yield [Stepping(method, step=run.until / (_FEWEST_STEPS * 2**k)) for k in range(_ROUNDS)]
 
 
-def _controlled(pilots: Pilots, tol: float, scale: list[float]) -> Iterator[Iterator[Stepping]]:
+def _controlled(pilots: Pilots, tol: float, scale: list[float]) -> Iterator[list[Stepping]]:
     loose = min(_LOOSEST, tol * _relative(pilots, scale, _size(pilots)))
     for method in CONTROLLED:
-        yield (Stepping(method, rtol=max(loose / 4**k, _TIGHTEST)) for k in range(_ROUNDS))
+        yield [Stepping(method, rtol=max(loose / 4**k, _TIGHTEST)) for k in range(_ROUNDS)]
 
 
 def _size(pilots: Pilots) -> float:

@@ -1,0 +1,269 @@
+"""Plans: what is chosen is precise enough, against another element on a fine mesh and against closed forms."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import ancf
+from ancf import cli
+from ancf.plan import pilots
+from ancf.plan.errors import Side, distance, scales
+from ancf.plan.ladder import RIGID, THIN, Choice, Rung, coarsest
+from ancf.plan.rigid import deflection
+from ancf.plan.shear import shear
+from ancf.plan.symmetry import halved
+
+STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
+RUBBER = ancf.Material(E=1e6, nu=0.3, density=1000.0)
+WEIGHT = ancf.Gravity(acceleration=(0.0, 0.0, -9.81))
+
+
+@pytest.fixture(autouse=True)
+def _cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+
+def cantilever(divisions: tuple[int, int] = (3, 3), element: str = "thin36") -> ancf.Model:
+    plate = ancf.Rectangle(
+        size=(0.5, 0.15),
+        divisions=divisions,
+        thickness=1e-3,
+        material=STEEL,
+        element=element,  # type: ignore[arg-type]
+    )
+    return ancf.Model(
+        bodies={"plate": plate},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, -200.0))],
+        probes=[ancf.Probe(name="A", at=(0.5, 0.15)), ancf.Probe(name="B", at=(0.25, 0.0), quantity="curvature")],
+    )
+
+
+@pytest.mark.parametrize("tol", [1e-1, 1e-2])
+def test_statics_against_another_element_on_a_fine_mesh(tol: float) -> None:
+    plan = ancf.plan(cantilever(), run=ancf.Static(), want="A", tol=tol)
+    exact = ancf.solve_static(cantilever((24, 8), "thin48")).probes["A"].value
+    found = plan.result.probes["A"].value
+    assert distance([found], [exact], scales([exact])) < tol
+    assert plan.converged
+    # The scene written is the one that was run, to the same bits.
+    again = plan.scene.solve()
+    assert isinstance(again, ancf.Result)
+    assert np.array_equal(again.probes["A"].value, found)
+
+
+def test_a_free_plate_that_hardly_deforms_is_a_rigid_body() -> None:
+    plate = ancf.Rectangle(size=(0.3, 0.3), divisions=(8, 8), thickness=5e-3, material=STEEL)
+    model = ancf.Model(
+        bodies={"plate": plate},
+        loads=[ancf.Force(at=(0.15, 0.15), force=(0.0, 0.0, 20.0)), WEIGHT],
+        probes=[ancf.Probe(name="A", at=(0.3, 0.0))],
+    )
+    plan = ancf.plan(model, run=ancf.Dynamic(until=0.4, step=1e-3), tol=1e-2)
+    run = plan.scene.run
+    assert isinstance(run, ancf.Dynamic)
+    assert run.method == "rigid"
+    # A force through the centre: no rotation.
+    acceleration = 20.0 / (7810.0 * 0.09 * 5e-3) - 9.81
+    t = plan.result.t
+    assert plan.result.probes["A"].value[:, 2] == pytest.approx(0.5 * acceleration * t**2, abs=1e-9)
+
+
+def test_a_soft_plate_is_no_rigid_body() -> None:
+    plate = ancf.Rectangle(size=(0.3, 0.1), divisions=(4, 2), thickness=0.01, material=RUBBER)
+    model = ancf.Model(
+        bodies={"plate": plate},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[WEIGHT],
+        probes=[ancf.Probe(name="A", at=(0.3, 0.1))],
+    )
+    plan = ancf.plan(model, run=ancf.Dynamic(until=0.1, step=1e-3), tol=1e-1)
+    fine = ancf.Rectangle(
+        size=(0.3, 0.1), divisions=(8, 3), thickness=0.01, material=RUBBER, element="thin48", membrane="projected"
+    )
+    reference = ancf.Model(bodies={"plate": fine}, supports=model.supports, loads=[WEIGHT], probes=model.probes)
+    exact = ancf.simulate(reference, until=0.1, method="esdirk", step=1e-3, outputs=plan.result.t[1:].tolist())
+    values = exact.probes["A"].value
+    assert distance([plan.result.probes["A"].value], [values], scales([values])) < 0.1
+
+
+def test_the_deflection_of_a_rigid_cantilever_is_the_linear_one() -> None:
+    """Twice that of a beam of unit width under its weight, q L^4 / 8 E I, at nu = 0."""
+    material = ancf.Material(E=2e11, nu=0.0, density=7800.0)
+    plate = ancf.Rectangle(size=(0.2, 0.02), divisions=(4, 1), thickness=2e-3, material=material)
+    model = ancf.Model(
+        bodies={"plate": plate},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[WEIGHT],
+        probes=[ancf.Probe(name="A", at=(0.2, 0.01))],
+    )
+    rigid = ancf.simulate(model, until=0.1, method="rigid", rtol=1e-4)
+    expected = 2 * 7800.0 * 9.81 * 2e-3 * 0.2**4 / (8 * 2e11 * (2e-3) ** 3 / 12)
+    assert deflection(model, rigid)[0] == pytest.approx(expected, rel=1e-3)
+
+
+def blown(size: tuple[float, float], divisions: tuple[int, int], supports: list[ancf.Support]) -> ancf.Model:
+    plate = ancf.Rectangle(size=size, divisions=divisions, thickness=8e-3, material=RUBBER)
+    probe = ancf.Probe(name="A", at=(0.2, 0.15))
+    return ancf.Model(
+        bodies={"mat": plate}, supports=supports, loads=[ancf.Pressure(pressure=200.0), WEIGHT], probes=[probe]
+    )
+
+
+def test_a_symmetric_scene_is_halved() -> None:
+    ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
+    plan = ancf.plan(blown((0.4, 0.3), (4, 4), ends), run=ancf.Static(), tol=1e-1)
+    assert "symmetric across the middle of x and y" in " ".join(plan.reasons)
+    body = plan.scene.model.bodies["mat"]
+    assert isinstance(body, ancf.Rectangle)
+    assert body.size == (0.2, 0.15)
+    whole = ancf.solve_static(blown((0.4, 0.3), (12, 8), ends)).probes["A"].value
+    assert distance([plan.result.probes["A"].value], [whole], scales([whole])) < 0.1
+
+
+def test_what_is_not_symmetric_is_not_halved() -> None:
+    model = blown((0.4, 0.3), (4, 4), [ancf.Support(at="edge:x0", clamp=True)])
+    assert halved(ancf.Scene("", model, ancf.Static()))[1] == [1]
+    pull = ancf.LineLoad(at="edge:x1", per_length=(0.0, 1.0, 0.0))
+    pulled = ancf.Model(bodies=model.bodies, supports=model.supports, loads=[pull], probes=model.probes)
+    assert halved(ancf.Scene("", pulled, ancf.Static()))[1] == []
+
+
+def test_halves_of_forces_and_pairs_of_loads() -> None:
+    model = blown(
+        (0.4, 0.3), (4, 4), [ancf.Support(at="corner:x0y0", fix=["r"]), ancf.Support(at="corner:x1y0", fix=["r"])]
+    )
+    force = ancf.Force(at=(0.2, 0.1), force=(0.0, 2.0, 4.0))
+    moments = [ancf.Moment(at=f"edge:x{end}", per_length=1.0) for end in (0, 1)]
+    whole = ancf.Model(bodies=model.bodies, supports=model.supports, loads=[force, *moments], probes=model.probes)
+    scene, mirrors = halved(ancf.Scene("", whole, ancf.Static()))
+    assert mirrors == [0]
+    assert [load.kind for load in scene.model.loads] == ["force", "moment"]
+    half = scene.model.loads[0]
+    assert isinstance(half, ancf.Force)
+    assert half.force == (0.0, 1.0, 2.0)
+    assert [support.at for support in scene.model.supports] == ["corner:x0y0", "edge:x1"]
+
+
+def test_shear_is_told_of_thick_plates() -> None:
+    """A cantilever of length L and height h deflects by F L / k G A from shear, F L^3 / 3 E I from bending."""
+    plate = ancf.Rectangle(size=(0.3, 0.9), divisions=(1, 1), thickness=0.03, material=STEEL)
+    stiff, area, inertia, length = 2.07e11, 0.03, 0.03**3 / 12, 0.3
+    by_shear = length / (5 / 6 * stiff / 2.6 * area)
+    by_bending = length**3 / (3 * stiff * inertia)
+    assert shear(ancf.Model(bodies={"plate": plate}))["plate"] == pytest.approx(by_shear / by_bending)
+
+
+def test_errors_of_a_geometric_sequence_are_covered() -> None:
+    for rate in (1.0, 2.0, 3.0):
+        errors = [2.0 ** (-rate * k) for k in range(4)]
+        side = Side(errors[1] - errors[2], float(np.log2((errors[0] - errors[1]) / (errors[1] - errors[2]))))
+        assert errors[2] <= side.error <= 5 * errors[2]
+
+
+def test_nodes_lie_where_supports_are() -> None:
+    plate = ancf.Rectangle(size=(0.3, 0.2), divisions=(3, 2), thickness=1e-3, material=STEEL)
+    at = [(0.1, 0.1), (0.2, 0.0)]
+    model = ancf.Model(bodies={"plate": plate}, supports=[ancf.Support(at=point, fix=["r"]) for point in at])
+    assert coarsest(model) == ((3, 2),)
+
+
+def test_rungs_are_named_in_words() -> None:
+    assert str(Choice(Rung(THIN[0], ((4, 1),)))) == "thin36 projected 4 x 1"
+    assert str(Rung(RIGID, ((1, 1), (2, 1)))) == "rigid 1 x 1 and 2 x 1"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"want": "C"}, "want"),
+        ({"tol": 0.0}, "tol"),
+        ({"tol": 2.0}, "tol"),
+        ({"budget": -1.0}, "budget"),
+        ({"run": None}, "run"),
+        ({"run": ancf.Static(path="arc")}, "run.path"),
+        ({"run": ancf.Modes(count=3)}, "run.kind"),
+    ],
+)
+def test_mistakes(arguments: dict[str, object], message: str) -> None:
+    with pytest.raises(ancf.InputError, match=message):
+        ancf.plan(cantilever(), **({"run": ancf.Static()} | arguments))  # type: ignore[arg-type]
+
+
+def test_what_does_not_change_cannot_be_wanted() -> None:
+    model = cantilever()
+    fixed = ancf.Probe(name="wall", at=(0.0, 0.0))
+    still = ancf.Model(bodies=model.bodies, supports=model.supports, loads=model.loads, probes=[fixed])
+    with pytest.raises(ancf.InputError, match="does not change"):
+        ancf.plan(still, run=ancf.Static())
+
+
+SCENE = """
+[material.steel]
+E = 2.07e11
+nu = 0.3
+density = 7810
+[body.plate]
+shape = "rectangle"
+size = [0.3, 0.3]
+divisions = [4, 4]
+thickness = 0.002
+material = "steel"
+[[load]]
+kind = "force"
+at = [0.1, 0.25]
+force = [5, -3, 20]
+[[probe]]
+name = "A"
+at = [0.3, 0.3]
+[run]
+kind = "dynamic"
+until = 0.3
+step = 1e-3
+"""
+
+
+@pytest.fixture
+def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "flight.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def test_the_command_writes_scene_numbers_and_picture(scene: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["plan", str(scene), "--want", "A", "--tol", "1e-2"]) == 0
+    assert "six rigid motions" in capsys.readouterr().out
+    folder = Path("flight-plan")
+    assert {path.name for path in folder.iterdir()} == {"scene.toml", "plan.json", "plan.png"}
+    written = tomllib.loads((folder / "scene.toml").read_text())
+    assert written["run"]["method"] == "rigid"
+    numbers = json.loads((folder / "plan.json").read_text())
+    assert numbers["rows"][numbers["chosen"]]["settings"] == numbers["choice"]
+    assert cli.main(["run", str(folder / "scene.toml"), "-o", "out", "--quiet"]) == 0
+    assert cli.main(["run", str(scene), "--tol", "1e-2", "-o", "both", "--quiet"]) == 0
+    out, both = (json.loads(Path(name, "summary.json").read_text())["probes"] for name in ("out", "both"))
+    assert out == both
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["plan", "--want", "B"], ["plan", "--tol", "2"], ["run", "-o", "out", "--want", "A"]],
+)
+def test_wrong_arguments_leave_nothing(scene: Path, arguments: list[str]) -> None:
+    command, *rest = arguments
+    assert cli.main([command, str(scene), *rest]) == 2
+    assert not Path("flight-plan").exists()
+    assert not Path("out").exists()
+
+
+def test_ctrl_c_ends_a_plan(scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupt(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(pilots, "solve", interrupt)
+    assert cli.main(["plan", str(scene)]) == 130
+    assert not Path("flight-plan").exists()
