@@ -88,20 +88,26 @@ def plan(
     if mirrors:
         found = _flexible(Pilots(part, names, pilots.left / 2, threads), costs, tol)
         off = _asymmetry(pilots, found, mirrors)
+        sides = " and ".join("xy"[axis] for axis in mirrors)
+        reason = f"The scene is symmetric across the middle of {sides}: the low half is enough"
+        if off is None:
+            reasons = [*found.reasons, f"{reason} if it moves so; the budget did not suffice to run the whole."]
+            return replace(found, reasons=reasons, converged=False, seconds=pilots.spent)
         if off <= _SYMMETRIC * tol:
-            sides = " and ".join("xy"[axis] for axis in mirrors)
-            reason = f"The scene is symmetric across the middle of {sides}: the low half is enough, to {off:.1g}."
-            return replace(found, reasons=[*found.reasons, reason], seconds=pilots.spent)
+            return replace(found, reasons=[*found.reasons, f"{reason}, to {off:.1g}."], seconds=pilots.spent)
     return _flexible(pilots, costs, tol)
 
 
-def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float:
-    """Return how far the whole is from its part with the same elements, relative: it may buckle to one side."""
+def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float | None:
+    """Return how far the whole is from its part with the same elements, relative: it may buckle to one side.
+
+    None if there is no time to tell.
+    """
     choice = found.settings
     rung = replace(choice.rung, divisions=doubled(choice.rung.divisions, mirrors))
     whole = pilots.run(replace(choice, rung=rung))
     if not whole.ok:
-        return np.inf
+        return None if pilots.left <= 0.0 else np.inf
     values = [found.result.probes[name].value for name in pilots.want]
     return distance(whole.values, values, scales(values))
 
@@ -115,7 +121,7 @@ def _flexible(pilots: Pilots, costs: Costs, tol: float) -> Plan:
     search = Search(pilots, costs, allowed, base, tol, timings)
     first = _first_family(search)
     if first is None or not search.up(first):
-        raise InputError(Mistake(("scene",), f"no pilot reached its end: {_last_words(pilots)}"))
+        raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
     scale = _scales(search.exact, pilots.want)
     search.down()
     chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
@@ -241,7 +247,7 @@ def _timings(
                 assert exact.choice.stepping is not None
                 found = [Timing(exact.choice.stepping, SHARE * tol, exact)]
             return found
-    raise InputError(Mistake(("scene",), f"no pilot reached its end: {_last_words(pilots)}"))
+    raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
 
 
 def _first_family(search: Search) -> Family | None:
