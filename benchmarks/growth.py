@@ -49,7 +49,7 @@ def twisted(rows: int) -> ancf.Surface:
     )
 
 
-BODIES: dict[str, Callable[[int], ancf.Plate]] = {"flat": flat, "curved": twisted}
+BODIES: dict[str, Callable[[int], ancf.Rectangle | ancf.Surface]] = {"flat": flat, "curved": twisted}
 
 
 def measure(body: str, rows: int) -> dict[str, float]:

@@ -76,7 +76,7 @@ def stop_and_go_on(scene: Path, folder: Path, number: signal.Signals, moments: l
     """Stop a run again and again; return how often it was, and whether what an interruption left was all it had."""
     checkpoint, stops, kept = folder.with_suffix(".checkpoint"), 0, True
     for moment in moments:
-        arguments = ["--resume", checkpoint] if checkpoint.exists() else []
+        arguments: list[str | Path] = ["--resume", checkpoint] if checkpoint.exists() else []
         process = start(scene, folder, "--checkpoint", checkpoint, *arguments)
         time.sleep(moment)
         if process.poll() is not None:

@@ -1,9 +1,13 @@
 """What several tests need."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+# Before NumPy: its matrices are small here, and its threads only wait for each other on a busy machine.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import ancf
 

@@ -24,9 +24,15 @@ from ancf.sweep import Timing
 AXES = ["element=thin36,full48a", "membrane=full", "mesh=0.5,1", "method=hht,verlet", "rtol=0.01,0.00001"]
 
 
+def solve(scene: ancf.Scene) -> ancf.Result:
+    result = scene.solve()
+    assert isinstance(result, ancf.Result)
+    return result
+
+
 def point(seconds: float, error: float) -> Point:
     label = Label("thin36 full", "1 x 1", "hht", "rtol 0.1")
-    return Point(label, {}, False, Timing((seconds,)), {"elements": 1}, error, error, 0.0)
+    return Point(label, {}, False, Timing((seconds,), (seconds,)), {"elements": 1}, error, error, 0.0)
 
 
 def test_the_front_is_what_nothing_beats() -> None:
@@ -111,8 +117,7 @@ def test_a_claimed_error_holds_against_a_finer_run(folder: Path, scenes: Path) -
         "rtol": 1e-6,
         "outputs": document["run"]["outputs"],
     }
-    fine = ancf.Scene.of(document).solve().probes["A"].value
-    coarse = scene.solve().probes["A"].value
+    fine, coarse = (solve(made).probes["A"].value for made in (ancf.Scene.of(document), scene))
     size = np.linalg.norm(fine - fine[0], axis=1).max()
     error = np.linalg.norm(coarse - fine, axis=1).max() / size
     own = next(float(row["error"]) for row in rows(folder) if row["accuracy"] == "step 0.005 s")
@@ -159,7 +164,7 @@ def test_a_statics_scene_and_runs_that_are_refused(scenes: Path, tmp_path: Path)
     errors = {p.label.mesh: p.error for p in chart.points}
     document = scene.document()
     fine, coarse = (
-        ancf.Scene.of({**document, "body": {"plate": document["body"]["plate"] | {"divisions": divisions}}}).solve()
+        solve(ancf.Scene.of({**document, "body": {"plate": document["body"]["plate"] | {"divisions": divisions}}}))
         for divisions in ([16, 4], [1, 1])
     )
     exact, value = (result.probes["tip"].value for result in (fine, coarse))
@@ -170,6 +175,27 @@ def test_a_statics_scene_and_runs_that_are_refused(scenes: Path, tmp_path: Path)
     paths = write_chart(tmp_path, chart)
     assert all(path.stat().st_size > 500 for path in paths)
     assert "allowed are thin36" in (tmp_path / "chart.md").read_text(encoding="utf-8")
+
+
+def test_a_claimed_error_holds_against_a_closed_form(tmp_path: Path) -> None:
+    """A strip bent to half a circle by a moment: its end moves by (-L, 0, 2 L / pi)."""
+    L, h, E = 10.0, 0.01, 1.2e6
+    strip = ancf.Rectangle(size=(L, 1.0), divisions=(8, 1), thickness=h, material=ancf.Material(E=E, nu=0.0))
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.Moment(at="edge:x1", per_length=np.pi / L * E * h**3 / 12)],
+        probes=[ancf.Probe(name="end", at=(L, 0.5), quantity="displacement")],
+    )
+    scene = ancf.Scene("Strip", model, ancf.Static())
+    axes: dict[str, Any] = {"element": ["thin36"], "mesh": [0.5, 1.0]}
+    chart = measure(scene, axes, tmp_path / "log.jsonl", budget=60, repeats=1)
+    exact = np.array([-L, 0.0, 2 * L / np.pi])
+    assert chart.reference.trust < 0.02
+    for found in chart.points:
+        value = solve(ancf.Scene.of(dict(found.scene))).probes["end"].value[-1]
+        error = np.linalg.norm(value - exact) / np.linalg.norm(exact)
+        assert abs(found.error - error) <= chart.reference.trust
 
 
 def test_what_there_is_no_time_for_is_listed(scenes: Path, tmp_path: Path) -> None:

@@ -14,7 +14,8 @@ import pytest
 import ancf
 from ancf.run import Method
 
-METHODS = get_args(Method)
+# Those for flexible bodies.
+METHODS = [method for method in get_args(Method) if method != "rigid"]
 # The pendulum of Dufva and Shabana (2005) with 2 x 2 elements, m: two implementations agree on it.
 TIP = [0.22634, 0.22634, -0.44155]
 
@@ -137,3 +138,13 @@ def test_a_broken_checkpoint_is_refused(tmp_path: Path) -> None:
         ancf.simulate(pendulum(4), until=0.01, step=1e-3, resume=checkpoint)
     with pytest.raises(ancf.InputError, match="method"):
         ancf.simulate(pendulum(), until=0.01, step=1e-3, method="esdirk", resume=checkpoint)
+
+
+def test_a_checkpoint_of_another_model_is_refused(tmp_path: Path) -> None:
+    checkpoint = tmp_path / "checkpoint"
+    ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=checkpoint)
+    lighter = ancf.Model(bodies=pendulum().bodies, supports=pendulum().supports, probes=pendulum().probes)
+    with pytest.raises(ancf.InputError, match="other loads"):
+        ancf.simulate(lighter, until=0.01, step=1e-3, resume=checkpoint)
+    with pytest.raises(ancf.InputError, match="other options"):
+        ancf.simulate(pendulum(), until=0.01, step=5e-4, resume=checkpoint)

@@ -8,7 +8,7 @@ from itertools import product
 from typing import Any, TypeAlias
 
 from ancf.errors import InputError, Mistake, one_of, show
-from ancf.run import Dynamic, Static
+from ancf.run import Dynamic, Modes, Static
 from ancf.scene import Scene
 from ancf.sweep import Variant
 
@@ -106,6 +106,8 @@ def with_few_outputs(scene: Scene) -> Scene:
     if isinstance(run, Dynamic):
         outputs = [run.until * (index + 1) / _OUTPUTS for index in range(_OUTPUTS)]
         run = Dynamic(**{key: value for key, value in run if key not in ("outputs", "every")}, outputs=outputs)
-    elif isinstance(run, Static) and run.path == "arc":
+    elif isinstance(run, Modes):
+        raise InputError(Mistake(("run", "kind"), "must be static or dynamic: charts show probes", show("modes")))
+    elif run.path == "arc":
         raise InputError(Mistake(("run", "path"), "charts compare states at equal load factors", show("arc")))
     return Scene(scene.title, scene.model, run, scene.material_names)

@@ -91,7 +91,7 @@ class Candidates:
             tight = {"method": "esdirk", "rtol": _TIGHTER * tightest}
             another = {"method": "tr_bdf2", "rtol": tightest}
         else:
-            assert isinstance(scene.run, Static), "a Variant has no modes"
+            assert isinstance(scene.run, Static)
             tight = {"tolerance": _TIGHT}
             another = {"tolerance": _TIGHT, "first_step": 0.25 * abs(scene.run.load_factors[0])}
         fine, coarse = {"mesh": _FINER * finest} | tight, {"mesh": finest} | tight

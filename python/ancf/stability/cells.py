@@ -1,4 +1,4 @@
-"""How a run went: one of six kinds, told from its energy, its probes and the way it ended."""
+"""How a run went: its kind, told from its energy, its probes and the way it ended."""
 
 from __future__ import annotations
 
@@ -11,11 +11,12 @@ import numpy as np
 from ancf.result import Energy
 from ancf.sweep import Outcome
 
-Kind: TypeAlias = Literal["accurate", "wrong", "growth", "newton", "blow-up", "refused", "time limit"]
+Kind: TypeAlias = Literal["accurate", "wrong", "unknown", "growth", "newton", "blow-up", "refused", "time limit"]
 
 KINDS: dict[Kind, str] = {
     "accurate": "stable and accurate",
     "wrong": "stable but wrong",
+    "unknown": "stable, not judged",
     "growth": "energy grows",
     "newton": "Newton fails",
     "blow-up": "blow-up",
@@ -90,7 +91,7 @@ def _judge(outcome: Outcome, gain: float, error: float) -> tuple[Kind, str]:
     if gain > BALANCED:
         return "growth", f"{gain:.0%} more energy than it should have"
     if np.isnan(error):
-        return "wrong", "no run with small steps to compare with"
+        return "unknown", "no run with small steps to compare with"
     if error <= ACCURATE:
         return "accurate", f"error {error:.1%}"
     why = f"{-gain:.0%} of the energy is damped away" if gain < -BALANCED else "its energy is right"
@@ -104,7 +105,7 @@ def _failed(outcome: Outcome, gain: float) -> Kind:
         return "time limit"
     if gain > _EXPLODED or "infinite or not a number in the step" in outcome.reason:
         return "blow-up"
-    return "newton"
+    return "growth" if gain > BALANCED else "newton"
 
 
 def energy_gain(energy: Energy) -> float:

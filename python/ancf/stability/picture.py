@@ -17,6 +17,7 @@ from ancf.stability.scan import Map
 COLOURS: dict[Kind, str] = {
     "accurate": "#3a9d68",
     "wrong": "#f2c14e",
+    "unknown": "#f7e3ae",
     "growth": "#e8743b",
     "newton": "#8a6bbf",
     "blow-up": "#b3202c",
@@ -72,9 +73,10 @@ def _draw_panel(axes: Axes, found: Map, method: str, steps: list[float], values:
             corner = (steps.index(cell.step) - 0.5, values.index(cell.value) - 0.5)
             axes.add_patch(Rectangle(corner, 1, 1, facecolor=COLOURS[cell.kind], edgecolor="white", linewidth=1.5))
             if not math.isnan(cell.error):
-                text = f"{100 * cell.error:.2g}" if cell.error < 9.995 else "> 999"
+                percent = 100 * cell.error
+                text = "< 0.01" if percent < 0.01 else f"{percent:.2g}" if percent < 999.5 else "> 999"
                 middle = (corner[0] + 0.5, corner[1] + 0.5)
-                axes.text(*middle, text, ha="center", va="center", fontsize=7.5, color=_INK)
+                axes.text(*middle, text, ha="center", va="center", fontsize=8, color=_INK)
     known = [(_place(found.limits[value], steps), row) for row, value in enumerate(values)]
     line = [(x, row) for x, row in known if not math.isnan(x)]
     if line:

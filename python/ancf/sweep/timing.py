@@ -16,15 +16,18 @@ from ancf.sweep.variant import Variant
 
 @dataclass(frozen=True)
 class Timing:
-    """The wall time of one run.
+    """The time of one run.
 
     Parameters
     ----------
     seconds : tuple of float
-        Of each repetition, s: set-up and results included, the start of the process not.
+        Wall time of each repetition, s: set-up and results included, the start of the process not.
+    processor : tuple of float
+        Processor time of each, s: nearly the same on one thread, and less disturbed by what else the machine does.
     """
 
     seconds: tuple[float, ...]
+    processor: tuple[float, ...]
 
     @property
     def best(self) -> float:
@@ -66,7 +69,7 @@ def time_alone(
     # Always the same order, so that a killed sweep goes on.
     order = random.Random(0)
     end = None if budget is None else time.monotonic() + budget
-    times: list[list[float]] = [[] for _ in variants]
+    times: list[list[tuple[float, float]]] = [[] for _ in variants]
     for repeat in range(1, repeats + 1):
         left = None if end is None or repeat == 1 else end - time.monotonic()
         if left is not None and left <= 0:
@@ -78,5 +81,5 @@ def time_alone(
             outcomes = sweep(turn, log, limit=limit, budget=left, executor=executor, threads=threads, progress=progress)
         for index, outcome in zip(indices, outcomes, strict=True):
             if outcome is not None and outcome.status == "ok":
-                times[index].append(outcome.seconds["total"])
-    return [Timing(tuple(seconds)) if seconds else None for seconds in times]
+                times[index].append((outcome.seconds["total"], outcome.seconds["processor"]))
+    return [Timing(*map(tuple, zip(*pairs, strict=True))) if pairs else None for pairs in times]

@@ -68,7 +68,7 @@ impl Stage<'_> {
             start: self.start,
         };
         let report = equations.newton.solve(equations.system, &problem, &mut at.q, Some(last), observer)?;
-        for (i, moved) in equations.newton.from_origin().iter().enumerate() {
+        for (i, moved) in equations.newton.distance_from_origin().iter().enumerate() {
             at.a[i] = moved / by_position;
             at.v[i] = self.velocity[i] + by_velocity * at.a[i];
         }

@@ -164,6 +164,7 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
     /// Adds the energy of a sample, gives the forces on its gradient vectors and sets its stiffness; `added` is stress that
     /// comes from elsewhere, for the forces and for the geometric stiffness.
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "what a sample needs, and where its parts go")]
     pub fn point<M: Measure<S, D, C>, const D: usize, const C: usize>(
         &self,
         sample: &Sample<S, D, C>,

@@ -82,7 +82,7 @@ impl Newton {
 
     /// `q - q*` of the last solution, without what rounding of the coordinates `q` takes of it. With it inertia balances
     /// the forces to rounding however far the body has moved.
-    pub(crate) fn from_origin(&self) -> &[f64] {
+    pub(crate) fn distance_from_origin(&self) -> &[f64] {
         &self.forces.from_origin
     }
 

@@ -9,7 +9,7 @@ use crate::quadrature::Rule;
 
 use super::Options;
 use super::load::ITERATIONS;
-use super::path::{Load, Path, Point};
+use super::path::{Load, Path, Point, difference, hermite};
 
 /// Largest distance of a solution from its prediction, relative to the step, and the one to aim at: by a polygon through
 /// the points a path can be drawn.
@@ -29,7 +29,7 @@ pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn 
     let factors = &options.load_factors;
     let (first, target) = (factors[0] - path.at.load.t, factors[factors.len() - 1]);
     let step = options.first_step.unwrap_or(f64::INFINITY);
-    let mut walk = Walk::new(path, first, step, options.min_step);
+    let mut walk = Walk::new(path, [first, step, options.min_step]);
     while path.at.load.t != target && path.steps < options.max_steps {
         walk.step(path, target, observer)?;
         path.steps += 1;
@@ -51,9 +51,9 @@ impl Walk {
     /// From the last point of the path, whose tangent is factorised, in the direction in which the load factor changes
     /// by `longest`; no step is longer than the tangent is for that change, the first and the shortest are that for
     /// `first` and `shortest`.
-    pub fn new(path: &mut Path<'_>, longest: f64, first: f64, shortest: f64) -> Self {
+    pub fn new(path: &mut Path<'_>, [longest, first, shortest]: [f64; 3]) -> Self {
         let metric = Metric::new(path);
-        let rate = metric.rate(path, &path.at.q.clone(), path.at.load.t);
+        let rate = path.rate(&path.at.q.clone(), path.at.load.t);
         let size = metric.length(&rate);
         let tangent = Tangent::new(rate, longest.signum() / size);
         let [longest, shortest] = [longest.abs(), shortest].map(|change| size * change);
@@ -64,7 +64,7 @@ impl Walk {
     pub fn step(&mut self, path: &mut Path<'_>, target: f64, observer: &dyn Observer) -> Result<(), Failure> {
         let mut share = 1.0;
         loop {
-            match advance(path, &self.metric, &self.tangent, share * self.length, target, observer) {
+            match self.advance(path, share * self.length, target, observer) {
                 Ok(Step::Accepted { iterations, turn, end }) => {
                     let growth = (ITERATIONS / iterations as f64).powi(2).min(share * TURN[1] / turn).clamp(0.5, 2.0);
                     self.length = (growth * self.length).min(self.longest);
@@ -84,6 +84,54 @@ impl Walk {
             }
         }
     }
+
+    /// One step, or none if it fails.
+    fn advance(&self, path: &mut Path<'_>, length: f64, target: f64, observer: &dyn Observer) -> Result<Step, Failure> {
+        let Self { metric, tangent, .. } = self;
+        let from = &path.at;
+        let mut q: Vec<f64> = from.q.iter().zip(&tangent.q).map(|(q, p)| q + length * p).collect();
+        let predicted = q.clone();
+        let t = from.load.t + length * tangent.t;
+        let mut problem = Problem { t, stiffness: 1.0, ..Problem::default() };
+        let normal = metric.weighted(&tangent.q);
+        let mut report = path.newton.solve_in_plane(path.system, &problem, &normal, &mut q, Some(&from.q), observer)?;
+        let iterations = report.iterations;
+
+        let way = {
+            let straight = difference(&q, &from.q);
+            let rate = path.rate(&q, report.t);
+            let chord = metric.length(&straight);
+            let forward = metric.product(&rate, &straight).signum() / metric.length(&rate);
+            Way { from: &path.at, q: &q, t: report.t, start: tangent, end: Tangent::new(rate, forward), chord }
+        };
+        let turn = metric.length(&difference(&q, &predicted)) / length;
+        let work = way.work(path);
+        let gained = report.energy - path.at.energy;
+        let mismatch = (gained - work) / work.abs();
+        if turn > TURN[0] || mismatch.abs() > MISMATCH {
+            return Err(Failure::Disconnected { progress: turn, mismatch });
+        }
+        if let Some(share) = way.limit().filter(|share| (LIMIT..1.0 - LIMIT).contains(share)) {
+            return Ok(Step::Shortened(share));
+        }
+        let mut last = None;
+        if (way.t - target) * (path.at.load.t - target) < 0.0 {
+            let crossing = way.crossing(target);
+            let mut end = way.at(crossing).0;
+            problem.t = target;
+            report = path.newton.solve(path.system, &problem, &mut end, Some(&path.at.q), observer)?;
+            let miss = metric.length(&difference(&end, &way.at(crossing).0)) / length;
+            if miss > LIMIT {
+                return Err(Failure::Disconnected { progress: miss, mismatch });
+            }
+            last = Some(end);
+        }
+        let end = way.end;
+        path.work += report.energy - path.at.energy;
+        let load = Load { t: report.t, held: 0.0 };
+        path.at = Point { load, q: last.unwrap_or(q), energy: report.energy, negative_pivots: report.negative_pivots };
+        Ok(Step::Accepted { iterations, turn, end })
+    }
 }
 
 enum Step {
@@ -94,60 +142,6 @@ enum Step {
     },
     /// There is a limit point at this share of the step, which should end there.
     Shortened(f64),
-}
-
-/// One step, or none if it fails.
-fn advance(
-    path: &mut Path<'_>,
-    metric: &Metric,
-    tangent: &Tangent,
-    length: f64,
-    target: f64,
-    observer: &dyn Observer,
-) -> Result<Step, Failure> {
-    let from = &path.at;
-    let mut q: Vec<f64> = from.q.iter().zip(&tangent.q).map(|(q, p)| q + length * p).collect();
-    let predicted = q.clone();
-    let t = from.load.t + length * tangent.t;
-    let mut problem = Problem { t, stiffness: 1.0, ..Problem::default() };
-    let normal = metric.weighted(&tangent.q);
-    let mut report = path.newton.solve_in_plane(path.system, &problem, &normal, &mut q, Some(&from.q), observer)?;
-    let iterations = report.iterations;
-
-    let way = {
-        let straight = difference(&q, &from.q);
-        let rate = metric.rate(path, &q, report.t);
-        let chord = metric.length(&straight);
-        let forward = metric.product(&rate, &straight).signum() / metric.length(&rate);
-        Way { from: &path.at, q: &q, t: report.t, start: tangent, end: Tangent::new(rate, forward), chord }
-    };
-    let turn = metric.length(&difference(&q, &predicted)) / length;
-    let work = way.work(path);
-    let gained = report.energy - path.at.energy;
-    let mismatch = (gained - work) / work.abs();
-    if turn > TURN[0] || mismatch.abs() > MISMATCH {
-        return Err(Failure::Disconnected { progress: turn, mismatch });
-    }
-    if let Some(share) = way.limit().filter(|share| (LIMIT..1.0 - LIMIT).contains(share)) {
-        return Ok(Step::Shortened(share));
-    }
-    let mut last = None;
-    if (way.t - target) * (path.at.load.t - target) < 0.0 {
-        let crossing = way.crossing(target);
-        let mut end = way.at(crossing).0;
-        problem.t = target;
-        report = path.newton.solve(path.system, &problem, &mut end, Some(&path.at.q), observer)?;
-        let miss = metric.length(&difference(&end, &way.at(crossing).0)) / length;
-        if miss > LIMIT {
-            return Err(Failure::Disconnected { progress: miss, mismatch });
-        }
-        last = Some(end);
-    }
-    let end = way.end;
-    path.work += report.energy - path.at.energy;
-    let load = Load { t: report.t, held: 0.0 };
-    path.at = Point { load, q: last.unwrap_or(q), energy: report.energy, negative_pivots: report.negative_pivots };
-    Ok(Step::Accepted { iterations, turn, end })
 }
 
 /// Changes per unit of length along the path.
@@ -186,14 +180,6 @@ impl Metric {
     /// The vector whose product with another one is theirs in this metric.
     pub fn weighted(&self, a: &[f64]) -> Vec<f64> {
         a.iter().zip(&self.weights).map(|(a, w)| w * a).collect()
-    }
-
-    /// Change of the coordinates per change of the load factor; the tangent there is factorised.
-    fn rate(&self, path: &mut Path<'_>, q: &[f64], t: f64) -> Vec<f64> {
-        let [mut force, mut rate] = [vec![0.0; q.len()], vec![0.0; q.len()]];
-        path.system.external_force_rate(q, t, &mut force);
-        path.system.solve(&force, &mut rate);
-        rate
     }
 }
 
@@ -250,14 +236,4 @@ fn bisect(f: impl Fn(f64) -> f64) -> f64 {
         if f(middle) * sign > 0.0 { low = middle } else { high = middle }
     }
     low
-}
-
-/// Value and derivative at `u` of the cubic with values `a`, `b` and slopes `p`, `s` at 0 and 1.
-fn hermite(u: f64, a: f64, b: f64, p: f64, s: f64) -> (f64, f64) {
-    let (c, d) = (3.0 * (b - a) - 2.0 * p - s, p + s - 2.0 * (b - a));
-    (a + u * (p + u * (c + u * d)), p + u * (2.0 * c + u * 3.0 * d))
-}
-
-fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }

@@ -3,6 +3,7 @@
 mod arc;
 mod jump;
 mod load;
+mod motion;
 mod path;
 
 use std::time::Instant;

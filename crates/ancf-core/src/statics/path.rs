@@ -125,6 +125,14 @@ impl<'a> Path<'a> {
         next
     }
 
+    /// Change of the coordinates per change of the load factor; the tangent there is factorised.
+    pub fn rate(&mut self, q: &[f64], t: f64) -> Vec<f64> {
+        let [mut force, mut rate] = [vec![0.0; q.len()], vec![0.0; q.len()]];
+        self.system.external_force_rate(q, t, &mut force);
+        self.system.solve(&force, &mut rate);
+        rate
+    }
+
     /// What the path has taken.
     pub fn counts(&self) -> Counts {
         let iterations = self.newton.iterations() + self.iterations;
@@ -161,4 +169,20 @@ impl<'a> Path<'a> {
         });
         observer.reached(load.t);
     }
+}
+
+/// `a - b`.
+pub(super) fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+/// `a . b`.
+pub(super) fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Value and derivative at `u` of the cubic with values `a`, `b` and slopes `p`, `s` at 0 and 1.
+pub(super) fn hermite(u: f64, a: f64, b: f64, p: f64, s: f64) -> (f64, f64) {
+    let (c, d) = (3.0 * (b - a) - 2.0 * p - s, p + s - 2.0 * (b - a));
+    (a + u * (p + u * (c + u * d)), p + u * (2.0 * c + u * 3.0 * d))
 }

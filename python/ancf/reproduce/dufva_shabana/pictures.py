@@ -14,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 from ancf.reproduce.dufva_shabana.paper import TABLE_1, TABLE_2, Seconds, pendulum
 from ancf.reproduce.dufva_shabana.runs import BEST_MOTION, BEST_STATIC, EXPLICIT, MODELS, SOLID, THIN, Runs
 from ancf.result import Result
+from ancf.scene import Scene
 from ancf.stage import Stage
 from ancf.sweep import Variant
 
@@ -91,7 +92,7 @@ def solve_shapes(number: int) -> dict[str, Result]:
     results = {}
     for name in (THIN, SOLID):
         document = Variant.of(pendulum(), **MODELS[name], divisions=[number, number], outputs=outputs).scene
-        result = pendulum().of(document).solve(throw=False)
+        result = Scene.of(document).solve(throw=False)
         assert isinstance(result, Result)
         results[name] = result
     return results

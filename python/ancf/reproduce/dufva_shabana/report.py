@@ -119,8 +119,8 @@ def _blocks(runs: Runs, found: Mapping[str, Table], shapes: int) -> list[Block]:
         Heading("Table 1: rubber pendulum, finer meshes"),
         Text(
             "0.3 x 0.3 x 0.01 m, pinned at a corner, 0.3 s under gravity, TR-BDF2 with rtol = 1e-3, which is what "
-            "MATLAB's ode23tb is. Simulation times, the shortest of "
-            f"{runs.repeats}, each run alone, in random order, one thread."
+            "MATLAB's ode23tb is. Simulation times are processor times of one thread, the shortest of "
+            f"{runs.repeats}, one run after the other in random order."
         ),
         found["table1"],
         Text("The other elements, and settings that do not follow the paper, for the same motion:"),

@@ -49,9 +49,9 @@ class Runs:
     limit: float
 
     def seconds(self, key: Key) -> float | None:
-        """Return the shortest time of a run, s; None if it did not end well."""
+        """Return the shortest processor time of a run, s; None if it did not end well."""
         timing = self.timings.get(key)
-        return None if timing is None else timing.best
+        return None if timing is None else min(timing.processor)
 
 
 def plan(quick: bool) -> dict[Key, Variant]:

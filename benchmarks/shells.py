@@ -1,0 +1,87 @@
+"""Print the table of docs/shells.md: published shells, each solved by its scene file with nothing set by hand.
+
+Run it from any folder with ``python benchmarks/shells.py``; it takes some minutes. ``--plot DIR`` draws the deformed
+shells as well, ``--quick`` leaves out the slowest.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+
+import ancf
+from ancf.bodies import Plate
+
+SCENES = Path(__file__).resolve().parent.parent / "examples" / "shells"
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene, a component of the displacement of a probe, and what is published for it."""
+
+    scene: str
+    probe: str
+    component: int
+    published: float
+    slow: bool = False
+
+
+SZE = [
+    Case("cantilever_shear", "end", 2, 6.698),
+    Case("cantilever_shear", "end", 0, -3.286),
+    Case("cantilever_moment", "end", 0, -12.0),
+    Case("slit_annulus", "A", 2, 13.891),
+    Case("slit_annulus", "B", 2, 17.528),
+    Case("pinched_hemisphere", "outwards", 0, 4.067),
+    Case("pinched_hemisphere", "inwards", 1, -8.178),
+    Case("pulled_cylinder", "A", 1, 2.768),
+    Case("pulled_cylinder", "B", 0, -4.551),
+    Case("pulled_cylinder", "C", 0, -3.269),
+    Case("pinched_half_cylinder", "A", 1, -1.71505, slow=True),
+    Case("pinched_cylinder", "A", 1, -83.102, slow=True),
+    Case("pinched_cylinder", "B", 0, 34.272, slow=True),
+    Case("hinged_roof_12.7", "A", 1, -28.876),
+    Case("hinged_roof_6.35", "A", 1, -38.190),
+]
+"""K. Y. Sze, X. H. Liu, S. H. Lo (2004), at full load; the roofs interpolated in its tables."""
+
+
+def main() -> None:
+    """Solve and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--plot", type=Path)
+    parser.add_argument("--quick", action="store_true")
+    options = parser.parse_args()
+    cases = [case for case in SZE if not (options.quick and case.slow)]
+    print("| shell | mesh | steps | iterations | jumps at | where | displacement | published | difference |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    results: dict[str, ancf.Result] = {}
+    for case in cases:
+        if case.scene not in results:
+            scene = ancf.load_scene(SCENES / f"{case.scene}.toml")
+            results[case.scene] = scene.solve()
+            if options.plot is not None:
+                results[case.scene].plot(scene.title).savefig(options.plot / f"shell_{case.scene}.png", dpi=100)
+        result = results[case.scene]
+        (body,) = result.model.bodies.values()
+        assert isinstance(body, Plate)
+        value = float(result.probes[case.probe].value[-1, case.component])
+        jumps = ", ".join(f"{t:.4f}" for t in result.jumps) or "-"
+        counts = result.counts
+        cells = [
+            case.scene.replace("_", " "),
+            "{} x {}".format(*body.divisions),
+            str(counts["steps"]),
+            str(counts["iterations"]),
+            jumps,
+            f"{case.probe}, {'xyz'[case.component]}",
+            f"{value:.4f}",
+            f"{case.published:.4g}",
+            f"{value / case.published - 1:+.2%}",
+        ]
+        print("|", " | ".join(cells), "|", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,115 @@
+//! A motion to rest: from a state that is not in equilibrium down the potential energy to a stable equilibrium.
+//!
+//! The motion `c M dq/dtau = Q_e - Q_k` is overdamped, in implicit steps whose length grows until inertia has no part any
+//! more. Only its end matters: a step must go down, but need not be exact.
+
+use std::sync::Arc;
+
+use crate::assembly::System;
+use crate::nonlinear::{Failure, Newton, Options as NewtonOptions, Problem};
+use crate::observe::Observer;
+
+use super::load::ROUNDING;
+use super::path::{Load, Path, Point, difference, product};
+
+/// Density, kg/m3, that lets a body without mass move and weighs nothing.
+const WEIGHTLESS: f64 = 1e-12;
+/// Factor of the inertia in a motion: by how much it changes after a step that succeeds and one that fails, relative to
+/// that of free vibration the least at which it may be left out and the largest that is tried.
+const LONGER: f64 = 0.25;
+const SHORTER: f64 = 6.0;
+const LIGHTEST: f64 = 1e-3;
+const HEAVIEST: f64 = 1e12;
+/// Iterations in a step after which the next one may be longer.
+const QUICK: usize = 4;
+/// Largest change of a coordinate in such a step, relative to the size of the model.
+const LONGEST: f64 = 0.3;
+/// A motion that moves less in a step, relative to the size of the model, has almost come to rest.
+const AT_REST: f64 = 0.05;
+/// Accuracy of a step.
+const TOLERANCE: f64 = 1e-5;
+/// Iterations after which a step has failed.
+const ITERATIONS: usize = 8;
+
+/// Where a motion begins, and what it needs to find its time scale.
+pub(super) struct Start<'a> {
+    /// Load factor.
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// A displacement like the one to come.
+    pub shape: &'a [f64],
+    /// Its product with the stiffness and itself, J.
+    pub stiffness: f64,
+}
+
+/// Moves until a stable equilibrium that is `wanted` is found, in at most so many steps; none: there is no such one.
+pub(super) fn settle(
+    path: &mut Path<'_>,
+    Start { t, mut q, shape, stiffness }: Start<'_>,
+    most: usize,
+    wanted: impl Fn(&Path<'_>, &Point) -> bool,
+    observer: &dyn Observer,
+) -> Result<Option<Point>, Failure> {
+    let model = path.system.model().with_least_density(WEIGHTLESS);
+    let mut damped = System::new(Arc::new(model)).map_err(|e| Failure::from_linear(e, 0, |_| String::new()))?;
+    let options = NewtonOptions { tolerance: TOLERANCE, max_iterations: ITERATIONS, ..NewtonOptions::default() };
+    let mut newton = Newton::new(&damped, options);
+
+    let mut force = vec![0.0; q.len()];
+    let mut energy = damped.internal_force(&q, &mut force).total();
+    force.fill(0.0);
+    damped.add_mass_times(shape, &mut force);
+    // Rayleigh's quotient.
+    let scale = stiffness / product(shape, &force);
+    let mut mass = scale;
+    let mut found = None;
+    for _ in 0..most {
+        let mut next = q.clone();
+        let problem = Problem { t, mass, stiffness: 1.0, origin: &q, ..Problem::default() };
+        let report = match newton.solve(&mut damped, &problem, &mut next, None, observer) {
+            Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
+            result => result.ok(),
+        };
+        let (moved, step) = (newton.distance(&q, &next), difference(&next, &q));
+        let valid = report.filter(|report| {
+            let descent = energy + damped.work(t, [&q, &next], [&step, &step]) - report.energy;
+            report.negative_pivots == 0 && moved <= LONGEST && descent >= -ROUNDING * energy
+        });
+        let Some(report) = valid else {
+            mass *= SHORTER;
+            if mass > HEAVIEST * scale {
+                break;
+            }
+            continue;
+        };
+        (q, energy) = (next, report.energy);
+        if report.iterations <= QUICK {
+            mass *= LONGER;
+        }
+        if moved < AT_REST && mass < LIGHTEST * scale {
+            found = rest(path, t, &q, observer)?.filter(|point| wanted(path, point));
+            if found.is_some() {
+                break;
+            }
+        }
+    }
+    path.forces += damped.forces();
+    path.factorizations += damped.factorizations();
+    path.iterations += newton.iterations();
+    Ok(found)
+}
+
+/// The stable equilibrium close to `q`, if there is one.
+fn rest(path: &mut Path<'_>, t: f64, q: &[f64], observer: &dyn Observer) -> Result<Option<Point>, Failure> {
+    let problem = Problem { t, stiffness: 1.0, ..Problem::default() };
+    let mut end = q.to_vec();
+    match path.newton.solve(path.system, &problem, &mut end, None, observer) {
+        Err(failure @ (Failure::Stopped | Failure::TooLarge)) => Err(failure),
+        Ok(report) if report.negative_pivots == 0 && path.newton.distance(q, &end) < AT_REST => {
+            let load = Load { t, held: 0.0 };
+            Ok(Some(Point { load, q: end, energy: report.energy, negative_pivots: 0 }))
+        }
+        _ => Ok(None),
+    }
+}
