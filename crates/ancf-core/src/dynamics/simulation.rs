@@ -77,7 +77,10 @@ impl<'a> Simulation<'a> {
     pub fn begin(&mut self, checkpoint: Option<Checkpoint>, observer: &mut dyn Observer) -> Result<(), Failure> {
         if let Some(checkpoint) = checkpoint {
             self.resume(checkpoint)?;
-            return self.check_limit();
+            self.check_limit()?;
+            // What an uninterrupted run would not have done is not counted.
+            self.earlier = [self.equations.system.forces(), self.equations.system.factorizations()];
+            return Ok(());
         }
         let q = self.equations.system.model().reference().to_vec();
         let zeros = vec![0.0; q.len()];
@@ -261,7 +264,6 @@ impl<'a> Simulation<'a> {
         (self.now, self.controller, self.counts) = (now, controller, counts);
         if let Some(tangent) = &tangent {
             tangent.restore(&mut self.equations)?;
-            self.earlier[1] = self.equations.system.factorizations();
         }
         self.tangent = tangent;
         Ok(())
