@@ -223,3 +223,28 @@ def test_wrong_arguments(arguments: list[str], capsys: pytest.CaptureFixture[str
         main(arguments)
     assert caught.value.code == 2
     assert "usage: ancf" in capsys.readouterr().err
+
+
+def test_a_signal_within_a_finalizer_is_not_lost() -> None:
+    """Python drops what is raised there."""
+    code = """
+import os, signal, time, weakref
+from ancf.commands.signals import watch_signals
+class Thing: pass
+def last(_):
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(0.01)
+watch_signals()
+thing = Thing()
+reference = weakref.ref(thing, last)
+try:
+    del thing
+    time.sleep(30)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    told = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=environment, timeout=60, check=True
+    )
+    assert (told.stdout, told.stderr) == ("interrupted\n", "")
