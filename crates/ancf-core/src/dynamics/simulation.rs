@@ -78,7 +78,10 @@ impl<'a> Simulation<'a> {
     /// Sets the state at the start, or the one of a checkpoint.
     pub fn begin(&mut self, checkpoint: Option<Checkpoint>, observer: &mut dyn Observer) -> Result<(), Failure> {
         if let Some(checkpoint) = checkpoint {
-            return self.resume(checkpoint);
+            self.resume(checkpoint)?;
+            // What an uninterrupted run would not have done is not counted.
+            self.earlier = [self.equations.system.forces(), self.equations.system.factorizations()];
+            return Ok(());
         }
         let q = self.equations.system.model().reference().to_vec();
         let zeros = vec![0.0; q.len()];
@@ -269,7 +272,6 @@ impl<'a> Simulation<'a> {
         (self.now, self.controller, self.counts) = (now, controller, counts);
         if let Some(tangent) = &tangent {
             tangent.restore(&mut self.equations)?;
-            self.earlier[1] = self.equations.system.factorizations();
         }
         self.tangent = tangent;
         Ok(())
