@@ -14,7 +14,7 @@ use super::stability::highest_frequency;
 use super::state::Instantaneous;
 
 /// Explicit steps after which the limit of stability is estimated again.
-const LIMIT_EVERY: usize = 100;
+const LIMIT_EVERY: usize = 20;
 /// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates.
 const STABLE: f64 = 0.9;
 
