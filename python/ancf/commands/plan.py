@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ancf.commands import OK, positive
 from ancf.output import make_folder, remove_folders
-from ancf.plan import BUDGET, Plan, plan
+from ancf.plan import Plan, plan
 
 if TYPE_CHECKING:
     from ancf.commands import Subparsers
@@ -46,7 +46,10 @@ def add_options(parser: argparse.ArgumentParser, tol: float | None) -> None:
         "--want", action="append", metavar="PROBE", help="plan: what must be precise; default: all probes"
     )
     parser.add_argument(
-        "--budget", type=_number, default=BUDGET, metavar="S", help=f"plan: seconds it may take; default: {BUDGET:g}"
+        "--budget",
+        type=_number,
+        metavar="S",
+        help="plan: seconds it may take; default: 50 times what the scene as written should take, from 20 to 300",
     )
 
 
