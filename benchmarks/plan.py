@@ -25,7 +25,7 @@ from ancf.run import Method
 from ancf.solve import solve
 
 TOLERANCES = (1e-1, 1e-2, 1e-3)
-BUDGET = 20.0
+BUDGET = 15.0
 """Seconds for the chart of a scene, whose cheap meshes come first; plans have their own default."""
 IMPLICIT: tuple[Method, ...] = ("hht", "generalized_alpha", "energy_momentum", "esdirk", "tr_bdf2")
 CONTROLLED: tuple[Method, ...] = ("hht", "esdirk", "tr_bdf2", "verlet", "rk")

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ancf.commands import OK, positive
+from ancf.commands import NOT_PROMISED, OK, complain, positive
 from ancf.output import make_folder, remove_folders
 from ancf.plan import Plan, plan
 
@@ -66,8 +66,18 @@ def _number(text: str) -> float:
 def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
     folder = options.output or Path(f"{options.scene.stem}-plan")
-    make_plan(options, folder)
-    return OK
+    return promise(make_plan(options, folder), folder)
+
+
+def promise(found: Plan, folder: Path) -> int:
+    """Return the exit status of a plan; complain if its estimates do not reach the tolerance."""
+    if found.converged:
+        return OK
+    error = found.error + found.error_in_time
+    message = (
+        f"the tolerance {found.tol:g} is not reached: the estimated error is {error:.2g}; {folder} has the best found"
+    )
+    return complain(message, NOT_PROMISED)
 
 
 def make_plan(options: argparse.Namespace, folder: Path) -> Plan:

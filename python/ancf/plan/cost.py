@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -96,10 +96,10 @@ class Costs:
         setup = pilot.result.seconds["setup"]
         return self.setup(rung) + max(pilot.seconds - setup, 0.0) * self.ratio(rung, pilot)
 
-    def steps(self, rung: Rung, steps: float, *, explicit: bool) -> float | None:
-        """Return the seconds of some steps, or steps of load; None if the family was not measured."""
+    def steps(self, rung: Rung, steps: float, *, explicit: bool) -> float:
+        """Return about the seconds of some steps, or steps of load; other families cost as those most like them."""
         if rung.family not in self._rates:
-            return None
+            rung = replace(rung, family=THIN[-1] if rung.family.element == THIN[-1].element else CONTINUOUS)
         work = self._of("force", rung) if explicit else _ITERATIONS * self._of("iteration", rung)
         return self.setup(rung) + steps * work
 

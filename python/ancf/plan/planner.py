@@ -27,7 +27,7 @@ from ancf.solve import solve
 
 LEAST, MOST, PROPORTION = 20.0, 300.0, 50.0
 """Seconds that a plan may take if nothing is said: at least, at most, and relative to the scene as written."""
-_RIGID_SHARE = 0.5
+_RIGID_SHARE = 0.7
 """Part of the tolerance below which the estimated deflection of a rigid body is no matter."""
 _SYMMETRIC = 0.2
 """Part of the tolerance that the whole of a symmetric scene may be off its half."""
