@@ -60,7 +60,9 @@ def main() -> None:
     for case in cases:
         if case.scene not in results:
             scene = ancf.load_scene(SCENES / f"{case.scene}.toml")
-            results[case.scene] = scene.solve()
+            solved = scene.solve()
+            assert isinstance(solved, ancf.Result)
+            results[case.scene] = solved
             if options.plot is not None:
                 results[case.scene].plot(scene.title).savefig(options.plot / f"shell_{case.scene}.png", dpi=100)
         result = results[case.scene]

@@ -49,7 +49,7 @@ impl Tangent {
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp2";
+const MAGIC: &[u8; 8] = b"ancf-cp3";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -97,6 +97,7 @@ impl Checkpoint {
         words.count(now.negative_pivots.map_or(0, |n| n + 1));
         words.number(controller.step);
         words.number(controller.last_error);
+        words.number(controller.limit);
         words.count(usize::from(controller.rejected));
         for count in
             [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.forces, counts.factorizations]
@@ -140,8 +141,8 @@ impl Checkpoint {
         let (q, v, a, external) = (words.numbers()?, words.numbers()?, words.numbers()?, words.numbers()?);
         let negative_pivots = words.count()?.checked_sub(1);
         let now = Instantaneous { t, q, v, a, lag, external, damping, work, dissipated, negative_pivots };
-        let [step, last_error] = words.array()?;
-        let controller = Controller { step, last_error, rejected: words.count()? != 0 };
+        let [step, last_error, limit] = words.array()?;
+        let controller = Controller { step, last_error, limit, rejected: words.count()? != 0 };
         let counts = Counts {
             steps: words.count()?,
             rejected: words.count()?,
