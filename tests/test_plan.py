@@ -3,6 +3,7 @@
 import json
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -338,14 +339,14 @@ def test_several_probes_in_statics_are_all_precise(tmp_path: Path, monkeypatch: 
 
 
 def test_a_surface_is_planned_as_the_cylinder_that_it_is() -> None:
-    def position(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def position(x: Any, y: Any) -> tuple[Any, Any, Any]:
         return np.cos(x), np.sin(x), y
 
-    common = {"divisions": (4, 4), "thickness": 5e-3, "material": STEEL}
-    surface = ancf.Surface(domain=((0.0, 1.0), (0.0, 0.5)), position=position, **common)  # type: ignore[arg-type]
+    common: dict[str, Any] = {"divisions": (4, 4), "thickness": 5e-3, "material": STEEL}
+    surface = ancf.Surface(domain=((0.0, 1.0), (0.0, 0.5)), position=position, **common)
     exact = ancf.Cylinder(
         radius=1.0, angle=(0.0, 1.0), length=(0.0, 0.5), **(common | {"divisions": (24, 8)}), element="thin48"
-    )  # type: ignore[arg-type]
+    )
     tips = []
     for body in (surface, exact):
         model = ancf.Model(

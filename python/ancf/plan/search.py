@@ -12,6 +12,7 @@ import numpy as np
 from ancf.plan.climb import Climb
 from ancf.plan.cost import Costs
 from ancf.plan.errors import RATES, Side, Values, distance, scales
+from ancf.plan.guess import Guess, fit
 from ancf.plan.ladder import COUNTS, RIGID, Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.timing import SHARE, Timing
@@ -449,50 +450,21 @@ class Search:
             if m * a <= x and n * b <= y:
                 yield Rung(family, ((m * a, n * b),))
 
-    def _guess(self, family: Family) -> _Guess:
-        """Return a model of the errors of a family: a power of the elements along each side, fitted to its pilots."""
-        sides_known = next((climb.sides for climb in self.climbs if climb.family == family), self.sides)
-        rates = {at: min(max(side.rate or 2.0, 1.0), 3.0) for at, side in sides_known.items()}
+    def _guess(self, family: Family) -> Guess:
+        """Return a model of the errors of a family, fitted to its pilots."""
+        known = next((climb.sides for climb in self.climbs if climb.family == family), self.sides)
+        rates = {at: min(max(side.rate or 2.0, 1.0), 3.0) for at, side in known.items()}
         scale = scales(self.exact)
-        sides = list(self.best.sides())
-        rows = []
-        for pilot in self.pilots.done:
-            rung = pilot.choice.rung
-            if pilot.ok and rung.family == family:
-                # Distances below what `exact` lacks tell nothing.
-                error = max(distance(pilot.values, self.exact, scale), 0.5 * self.own)
-                # Fine rungs tell more of fine ones.
-                rows.append(
-                    [_power(rung, at, rates) / error * rung.elements**0.5 for at in sides] + [rung.elements**0.5]
-                )
-        if not rows:
-            # Nothing is known of it: as good as the one that was refined.
-            return self._guess(self.best.family) if family != self.best.family else _Guess(rates, {})
-        matrix = np.array(rows)
-        weights = np.zeros(len(sides))
-        used = np.full(len(sides), True)
-        # Least squares with weights that are not negative: those that would be are left out.
-        while used.any():
-            weights[:] = 0.0
-            weights[used] = np.linalg.lstsq(matrix[:, :-1][:, used], matrix[:, -1], rcond=1e-9)[0]
-            if (weights >= 0.0).all():
-                break
-            used &= weights > 0.0
-        return _Guess(rates, dict(zip(sides, weights.tolist(), strict=True)))
-
-
-@dataclass(frozen=True)
-class _Guess:
-    rates: dict[tuple[int, int], float]
-    weights: dict[tuple[int, int], float]
-
-    def __call__(self, rung: Rung) -> float:
-        return sum(weight * _power(rung, at, self.rates) for at, weight in self.weights.items())
-
-
-def _power(rung: Rung, at: tuple[int, int], rates: dict[tuple[int, int], float]) -> float:
-    body, axis = at
-    return float(float(rung.divisions[body][axis]) ** -rates.get(at, 2.0))
+        # Distances below what `exact` lacks tell nothing.
+        errors = [
+            (pilot.choice.rung, max(distance(pilot.values, self.exact, scale), 0.5 * self.own))
+            for pilot in self.pilots.done
+            if pilot.ok and pilot.choice.rung.family == family
+        ]
+        if errors:
+            return fit(errors, list(self.best.sides()), rates)
+        # Nothing is known of it: as good as the one that was refined.
+        return self._guess(self.best.family) if family != self.best.family else Guess(rates, {})
 
 
 def _within(rung: Rung, other: Rung) -> bool:
