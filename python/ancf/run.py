@@ -214,10 +214,10 @@ class Dynamic(_Run):
         mistakes = Mistakes()
         if (self.step is None) == (self.rtol is None):
             mistakes.add(("step",), "give either step, for fixed steps, or rtol, for error control", self.step)
-        if self.step is not None and self.step > self.until:
-            mistakes.add(("step",), "must not be greater than until", self.step)
-        if self.step is not None and self.until / self.step > _MOST_STEPS:
-            mistakes.add(("step",), f"must be at least until / {_MOST_STEPS:.0e}", self.step)
+        if self.step is not None and not 1 <= self.until / self.step <= _MOST_STEPS:
+            mistakes.add(
+                ("step",), f"must not be greater than until, nor less than until / {_MOST_STEPS:.0e}", self.step
+            )
         for name, method in (("alpha", "hht"), ("rho_inf", "generalized_alpha"), ("lumped", "verlet")):
             if getattr(self, name) not in (None, False) and self.method != method:
                 mistakes.add((name,), f'is for method = "{method}" only', getattr(self, name))
