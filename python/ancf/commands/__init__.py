@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     Subparsers = argparse._SubParsersAction[argparse.ArgumentParser]
 
-OK, CANNOT_WRITE, WRONG_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
+OK, CANNOT_WRITE, WRONG_INPUT, FAILED, NOT_PROMISED, INTERRUPTED = 0, 1, 2, 3, 4, 130
 """Exit status: success, a file could not be written, a mistake in the arguments or the scene, the run failed half way,
-interrupted."""
+the tolerance of a plan is not reached, interrupted."""
 
 
 def complain(message: object, status: int) -> int:
