@@ -114,6 +114,7 @@ def _about_measuring(chart: Chart) -> list[str]:
         f"Wall time: one thread, each run alone on the machine, all runs in random order, {times}; the shortest "
         "counts. Set-up and results are included, the start of the process is not.",
         "Errors and counts come from an earlier run, several at a time.",
+        *chart.remarks,
     ]
 
 
@@ -207,7 +208,7 @@ def _datum(point: Point, wins: list[str]) -> dict[str, Any]:
         "seconds": point.timing.best,
         "repeats": len(point.timing.seconds),
         **{name: point.counts[name] for name in _COUNTS if name in point.counts},
-        "toml": _excerpt(point.scene),
+        "toml": _excerpt(point.scene) if point.scene else None,
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from typing import TYPE_CHECKING
 
@@ -21,8 +22,19 @@ def complain(message: object, status: int) -> int:
     return status
 
 
+def seconds(text: str) -> float:
+    """Read a duration, s."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not a number of seconds greater than 0")
+    return value
+
+
 def positive(text: str) -> int:
-    """Read a number of threads or processes, from 1 to 1024."""
+    """Read a number of threads or repetitions, from 1 to 1024."""
     if not text.isdecimal() or not 1 <= int(text) <= 1024:
         raise argparse.ArgumentTypeError(f"{text} is not a whole number from 1 to 1024")
     return int(text)

@@ -97,6 +97,7 @@ impl Checkpoint {
         words.count(now.negative_pivots.map_or(0, |n| n + 1));
         words.number(controller.step);
         words.number(controller.last_error);
+        words.number(controller.limit);
         words.count(usize::from(controller.rejected));
         let Rejections { inaccurate, unsolved, singular, not_finite } = counts.rejected;
         for count in [counts.steps, inaccurate, unsolved, singular, not_finite] {
@@ -142,8 +143,8 @@ impl Checkpoint {
         let (q, v, a, external) = (words.numbers()?, words.numbers()?, words.numbers()?, words.numbers()?);
         let negative_pivots = words.count()?.checked_sub(1);
         let now = Instantaneous { t, q, v, a, lag, external, damping, work, dissipated, negative_pivots };
-        let [step, last_error] = words.array()?;
-        let controller = Controller { step, last_error, rejected: words.count()? != 0 };
+        let [step, last_error, limit] = words.array()?;
+        let controller = Controller { step, last_error, limit, rejected: words.count()? != 0 };
         let counts = Counts {
             steps: words.count()?,
             rejected: Rejections {
