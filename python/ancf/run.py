@@ -224,8 +224,8 @@ class Dynamic(_Run):
         for name in ("atol", "first_step", "max_step", "min_step"):
             if getattr(self, name) is not None and self.rtol is None:
                 mistakes.add((name,), "is for error control, with rtol, only", getattr(self, name))
-        if self.force and self.step is None:
-            mistakes.add(("force",), "is for fixed steps only", self.force)
+        if self.force and (self.step is None or self.method not in ("verlet", "rk")):
+            mistakes.add(("force",), "is for fixed steps of explicit methods only: verlet, rk", self.force)
         if self.max_step is not None and self.min_step is not None and self.min_step > self.max_step:
             mistakes.add(("min_step",), "must not be greater than max_step", self.min_step)
         if self.outputs is not None and self.every is not None:

@@ -6,8 +6,9 @@ import json
 from collections.abc import Mapping, Sequence
 from itertools import product
 from math import inf
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias, get_args, get_origin
 
+from ancf.bodies import Rectangle
 from ancf.errors import InputError, Mistake, one_of, show
 from ancf.materials import Material
 from ancf.places import is_number
@@ -67,9 +68,20 @@ def read_axes(texts: Sequence[str], scene: Scene) -> Axes:
             problem = f"give it values, as {name}=1,2; without values {one_of(defaults, name)}"
             raise InputError(Mistake(("axes", name), problem))
         axes[name] = read_values(name, values) if given else defaults[name]
+        for value in axes[name]:
+            choices = _choices(name, scene)
+            if choices and value not in choices:
+                raise InputError(Mistake(("axes", name), one_of(choices, value), show(value)))
         if name in ("mesh", "rtol") and not all(is_number(value) and 0 < value < inf for value in axes[name]):
             raise InputError(Mistake(("axes", name), "must be numbers greater than 0", show(values)))
     return axes
+
+
+def _choices(name: str, scene: Scene) -> tuple[str, ...]:
+    """Return the words that a setting can be, none if it is a number."""
+    fields = {**Rectangle.model_fields, **type(scene.run).model_fields}
+    kinds = (fields[name].annotation, *get_args(fields[name].annotation)) if name in fields else ()
+    return tuple(word for kind in kinds if get_origin(kind) is Literal for word in get_args(kind))
 
 
 def read_values(name: str, text: str) -> list[Any]:

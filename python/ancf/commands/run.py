@@ -43,8 +43,9 @@ def add(commands: Subparsers) -> None:
 def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
     folder = options.output
-    if options.tol is None and options.want:
-        raise InputError(Mistake(("want",), "is for planned runs, with --tol"))
+    for name in ("want", "budget"):
+        if options.tol is None and getattr(options, name) is not None:
+            raise InputError(Mistake((name,), "is for planned runs, with --tol"))
     if options.tol is not None and (options.checkpoint or options.resume):
         raise InputError(Mistake(("tol",), "plans without checkpoints: run the scene that the plan has written"))
     scene = load_scene(options.scene)

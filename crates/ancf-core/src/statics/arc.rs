@@ -77,7 +77,8 @@ impl Walk {
                     path.rejected.count(&failure);
                     self.length *= 0.5 * share;
                     share = 1.0;
-                    if self.length < self.shortest {
+                    // A load beyond all numbers gives lengths that never become short.
+                    if !(self.shortest..f64::INFINITY).contains(&self.length) {
                         return Err(failure);
                     }
                 }
