@@ -19,15 +19,18 @@ import numpy as np
 
 import ancf
 from ancf.plan.errors import Values, distance, scales
-from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Family, Rung, Stepping
+from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Family, Rung, Stepping, apply
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.run import Method
+from ancf.solve import solve
 
 TOLERANCES = (1e-1, 1e-2, 1e-3)
-BUDGET = 30.0
-"""Seconds for each plan, and for the chart of a scene, whose cheap meshes come first."""
+BUDGET = 15.0
+"""Seconds for the chart of a scene, whose cheap meshes come first; plans have their own default."""
 IMPLICIT: tuple[Method, ...] = ("hht", "generalized_alpha", "energy_momentum", "esdirk", "tr_bdf2")
 CONTROLLED: tuple[Method, ...] = ("hht", "esdirk", "tr_bdf2", "verlet", "rk")
+_TIMED, _REPEATS, _SHORT = 4, 12, 0.05
+"""Of the cheapest runs of a chart, how many are repeated, how often, and up to which seconds."""
 STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
 PAPER = ancf.Material(E=3e9, nu=0.2, density=800.0, mass_damping=2.0)
 RUBBER = ancf.Material(E=1e6, nu=0.45, density=1100.0)
@@ -152,18 +155,18 @@ def motions() -> Iterator[Case]:
     kick = [line("x1", 0.0, 0.0, 8.0), line("x0", 4.0, 0.0, 0.0)]
     yield Case(
         scene("shell thrown", shell, [], kick, (2.0, 0.2), ancf.Dynamic(until=0.15, step=1e-3)),
-        ((12, 6), (16, 8)),
+        ((24, 16), (48, 24)),
         x,
         y,
-        fine,
+        Stepping("verlet", rtol=1e-4),
     )
     flag = plate((0.3, 0.3), 0.01, SOFT)
     yield Case(
         scene("rubber pendulum", flag, [HINGE], [WEIGHT], (0.3, 0.3), ancf.Dynamic(until=0.2, step=1e-3)),
-        ((12, 6), (16, 8)),
+        ((24, 16), (64, 32)),
         x,
         y,
-        fine,
+        Stepping("verlet", rtol=1e-4),
     )
 
 
@@ -213,7 +216,7 @@ def judge(name: str) -> list[Line]:
     exact, other = (references[family].values for family in (CONTINUOUS, THIN[0]))
     doubt = distance(exact, other, scales(exact))
     try:
-        plans = [ancf.plan(case.scene, want="A", tol=tol, budget=BUDGET, threads=1) for tol in TOLERANCES]
+        plans = [ancf.plan(case.scene, want="A", tol=tol, threads=1) for tol in TOLERANCES]
     except ancf.InputError as mistake:
         print(name, mistake, file=sys.stderr)
         return []
@@ -223,17 +226,30 @@ def judge(name: str) -> list[Line]:
         # Another element than the one that is judged.
         truth = other if plan.choice.startswith("thin48") else exact
         error = distance([plan.result.probes["A"].value], truth, scales(truth))
-        own, own_error = plan.rows[plan.chosen].seconds, plan.error + plan.error_in_time
-        fits = [(seconds, choice) for seconds, off, choice in tried if off <= tol]
-        cheapest, best = min([*fits, (own, plan.choice)])
+        fits = sorted(((s, c) for s, off, c in tried if off <= tol), key=lambda fit: fit[0])
+        own = again(plan.scene, plan.rows[plan.chosen].seconds)
+        # Many short runs are likely to hold a lucky one: the cheapest few are timed as often as the choice.
+        near = [(again(apply(case.scene, choice), seconds), str(choice)) for seconds, choice in fits[:_TIMED]]
+        cheapest, best = min([*near, (own, plan.choice)])
+        own_error = plan.error + plan.error_in_time
         cells = (own_error, plan.converged, doubt, own, cheapest, best, plan.seconds)
         lines.append(Line(name, tol, plan.choice, error, *cells))
     return lines
 
 
-def chart(case: Case, pilots: Pilots, exact: Values) -> list[tuple[float, float, str]]:
+def again(scene: ancf.Scene, seconds: float) -> float:
+    """Return the shortest of several times of a short run; a long one's only time."""
+    for _ in range(_REPEATS if seconds < _SHORT else 0):
+        start = time.process_time()
+        assert not isinstance(scene.run, ancf.Modes)
+        solve(scene.model, scene.run, threads=1)
+        seconds = min(seconds, time.process_time() - start)
+    return seconds
+
+
+def chart(case: Case, pilots: Pilots, exact: Values) -> list[tuple[float, float, Choice]]:
     """Run many settings: seconds, error and words of each; those dearer than what is as good are given up."""
-    tried: list[tuple[float, float, str]] = []
+    tried: list[tuple[float, float, Choice]] = []
     scale = scales(exact)
     start = time.process_time()
 
@@ -242,7 +258,7 @@ def chart(case: Case, pilots: Pilots, exact: Values) -> list[tuple[float, float,
         if time.process_time() - start < BUDGET:
             pilot = pilots.run(choice, limit + 0.02)
             if pilot.ok:
-                tried.append((pilot.seconds, distance(pilot.values, exact, scale), str(choice)))
+                tried.append((pilot.seconds, distance(pilot.values, exact, scale), choice))
 
     steppings: list[Stepping | None] = [None]
     if case.stepping is not None:
@@ -290,7 +306,7 @@ def main() -> None:
     print("| scene | tolerance | chosen | true error | promised | reference to | s | cheapest s | ratio | plan s |")
     print("|---|---|---|---|---|---|---|---|---|---|")
     lines: list[Line] = []
-    with ProcessPoolExecutor(3) as pool:
+    with ProcessPoolExecutor(2) as pool:
         for found in pool.map(judge, names):
             lines += found
             print(*found, sep="\n", flush=True)

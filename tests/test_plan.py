@@ -3,6 +3,7 @@
 import json
 import tomllib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ import ancf
 from ancf import cli
 from ancf.plan import pilots
 from ancf.plan.errors import Side, distance, scales
-from ancf.plan.ladder import RIGID, THIN, Choice, Rung, coarsest
+from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Rung, coarsest
+from ancf.plan.planner import LEAST, MOST, PROPORTION
 from ancf.plan.rigid import deflection
 from ancf.plan.shear import shear
 from ancf.plan.symmetry import halved
@@ -260,10 +262,132 @@ def test_wrong_arguments_leave_nothing(scene: Path, arguments: list[str]) -> Non
     assert not Path("out").exists()
 
 
-def test_ctrl_c_ends_a_plan(scene: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("command", [["plan"], ["run", "--tol", "1e-2", "-o", "flight-plan"]])
+def test_ctrl_c_ends_a_plan(scene: Path, monkeypatch: pytest.MonkeyPatch, command: list[str]) -> None:
     def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(pilots, "solve", interrupt)
-    assert cli.main(["plan", str(scene)]) == 130
+    assert cli.main([command[0], str(scene), *command[1:]]) == 130
     assert not Path("flight-plan").exists()
+
+
+CANTILEVER = """
+[material.steel]
+E = 2.07e11
+nu = 0.3
+density = 7810
+[body.plate]
+shape = "rectangle"
+size = [0.5, 0.15]
+divisions = [4, 4]
+thickness = 0.001
+material = "steel"
+[[support]]
+at = "edge:x0"
+clamp = true
+[[load]]
+kind = "line"
+at = "edge:x1"
+per_length = [0, 0, -200]
+[[probe]]
+name = "A"
+at = [0.5, 0.15]
+[[probe]]
+name = "B"
+at = [0.25, 0.0]
+quantity = "displacement"
+[run]
+kind = "static"
+"""
+
+
+def test_the_mirror_holds_all_that_an_element_has() -> None:
+    """The half of a symmetric plate is the whole, also with the twist r_xy of `thin48`."""
+    ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
+    whole = ancf.Scene("", blown((0.4, 0.3), (4, 4), ends), ancf.Static())
+    part, mirrors = halved(whole)
+    assert mirrors == [0, 1]
+    for family in (*THIN, CONTINUOUS):
+        one, other = (
+            pilots.Pilots(scene, ["A"], np.inf, 1).run(Choice(Rung(family, (divisions,))))
+            for scene, divisions in ((whole, (4, 4)), (part, (2, 2)))
+        )
+        assert one.ok
+        assert np.allclose(one.values[0], other.values[0], rtol=0.0, atol=1e-9), family
+
+
+def test_several_probes_in_statics_are_all_precise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that is planned, from another folder than that of the scene."""
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "scenes/plate.toml").write_text(CANTILEVER)
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert cli.main(["run", "../scenes/plate.toml", "--tol", "5e-2", "-o", "out", "--quiet"]) == 0
+    assert {path.name for path in Path("out").iterdir()} >= {"summary.json", "scene.toml", "plan.json", "plan.png"}
+    plan = json.loads(Path("out/plan.json").read_text())
+    assert set(plan["scale"]) == {"A", "B"}
+    model = cantilever((24, 8), "thin48")
+    probes = [model.probes[0], ancf.Probe(name="B", at=(0.25, 0.0), quantity="displacement")]
+    fine = ancf.Model(bodies=model.bodies, supports=model.supports, loads=model.loads, probes=probes)
+    exact = ancf.solve_static(fine).probes
+    found = ancf.load_scene("out/scene.toml").solve()
+    assert isinstance(found, ancf.Result)
+    for name in "AB":
+        values = exact[name].value
+        assert distance([found.probes[name].value[-1:]], [values[-1:]], scales([values])) < 5e-2
+
+
+def test_a_surface_is_planned_as_the_cylinder_that_it_is() -> None:
+    def position(x: Any, y: Any) -> tuple[Any, Any, Any]:
+        return np.cos(x), np.sin(x), y
+
+    common: dict[str, Any] = {"divisions": (4, 4), "thickness": 5e-3, "material": STEEL}
+    surface = ancf.Surface(domain=((0.0, 1.0), (0.0, 0.5)), position=position, **common)
+    exact = ancf.Cylinder(
+        radius=1.0, angle=(0.0, 1.0), length=(0.0, 0.5), **(common | {"divisions": (24, 8)}), element="thin48"
+    )
+    tips = []
+    for body in (surface, exact):
+        model = ancf.Model(
+            bodies={"roof": body},
+            supports=[ancf.Support(at="edge:x0", clamp=True)],
+            loads=[ancf.LineLoad(at="edge:x1", per_length=(2e3, 0.0, 0.0))],
+            probes=[ancf.Probe(name="A", at=(1.0, 0.5))],
+        )
+        done = ancf.plan(model, run=ancf.Static(), tol=2e-2).result if body is surface else ancf.solve_static(model)
+        tips.append(done.probes["A"].value[[0, -1]])
+    assert distance(tips[:1], tips[1:], scales(tips[1:])) < 2e-2
+
+
+def test_a_tolerance_that_is_not_reached_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("plate.toml").write_text(CANTILEVER)
+    arguments = ["plate.toml", "--tol", "1e-6", "--budget", "0.5", "--quiet"]
+    assert cli.main(["plan", *arguments]) == 4
+    assert cli.main(["run", *arguments, "-o", "out"]) == 4
+    assert capsys.readouterr().err.count("the tolerance 1e-06 is not reached") == 2
+    assert Path("out/summary.json").exists()
+
+
+def test_what_a_scene_without_probes_wants_is_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "plate.toml"
+    head, _, tail = CANTILEVER.partition("[[probe]]")
+    path.write_text(head + tail[tail.index("[run]") :])
+    assert cli.main(["run", str(path), "--tol", "0.1", "-o", str(tmp_path / "out")]) == 2
+    assert "no probes" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_plan_is_as_long_as_the_scene_deserves() -> None:
+    short = ancf.plan(cantilever(), run=ancf.Static(), want="A", tol=0.5)
+    assert short.budget == LEAST
+    assert short.seconds_as_written is not None
+    assert "as it was written would take about" in str(short)
+    fine = cantilever((48, 48))
+    long = ancf.plan(fine, run=ancf.Static(load_factors=[k / 100 for k in range(1, 101)]), want="A", tol=0.5)
+    assert long.seconds_as_written is not None
+    assert long.seconds_as_written > short.seconds_as_written
+    assert long.budget == min(max(PROPORTION * long.seconds_as_written, LEAST), MOST)

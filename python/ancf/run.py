@@ -20,6 +20,7 @@ from ancf.model import Model
 
 _INTERVALS = 100
 _MOST_OUTPUTS = 1_000_000
+_MOST_STEPS = 10**12
 
 Method: TypeAlias = Literal[
     "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk", "rigid"
@@ -113,6 +114,10 @@ class Static(_Run):
         mistakes = Mistakes()
         for body, motion in model.rigid_motions():
             mistakes.add(("supports",), f"the body {body} can still move: {motion}; in statics supports must hold it")
+        for index, support in enumerate(model.supports):
+            for name in ("translation", "shake", "rotation"):
+                if getattr(support, name) is not None:
+                    mistakes.add(("supports", index, name), "is for motion; in statics supports stay where they are")
         if any(isinstance(load, Gravity) for load in model.loads):
             check_density(model, mistakes, "where gravity acts")
         mistakes.check()
@@ -209,8 +214,10 @@ class Dynamic(_Run):
         mistakes = Mistakes()
         if (self.step is None) == (self.rtol is None):
             mistakes.add(("step",), "give either step, for fixed steps, or rtol, for error control", self.step)
-        if self.step is not None and self.step > self.until:
-            mistakes.add(("step",), "must not be greater than until", self.step)
+        if self.step is not None and not 1 <= self.until / self.step <= _MOST_STEPS:
+            mistakes.add(
+                ("step",), f"must not be greater than until, nor less than until / {_MOST_STEPS:.0e}", self.step
+            )
         for name, method in (("alpha", "hht"), ("rho_inf", "generalized_alpha"), ("lumped", "verlet")):
             if getattr(self, name) not in (None, False) and self.method != method:
                 mistakes.add((name,), f'is for method = "{method}" only', getattr(self, name))

@@ -4,7 +4,9 @@
 """
 
 from ancf.chart.axes import default_axes, read_axes
+from ancf.chart.labels import Label
 from ancf.chart.measure import Chart, measure
+from ancf.chart.points import Rival
 from ancf.chart.report import write_chart
 
-__all__ = ["Chart", "default_axes", "measure", "read_axes", "write_chart"]
+__all__ = ["Chart", "Label", "Rival", "default_axes", "measure", "read_axes", "write_chart"]

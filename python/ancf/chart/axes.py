@@ -5,12 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from itertools import product
+from math import inf
 from typing import Any, TypeAlias
 
 from ancf.errors import InputError, Mistake, one_of, show
+from ancf.materials import Material
+from ancf.places import is_number
 from ancf.run import Dynamic, Modes, Static
 from ancf.scene import Scene
 from ancf.sweep import Variant
+from ancf.sweep.variant import OF_BODIES
 
 Axes: TypeAlias = Mapping[str, Sequence[Any]]
 
@@ -50,16 +54,21 @@ def read_axes(texts: Sequence[str], scene: Scene) -> Axes:
     Raises
     ------
     InputError
-        If an axis has no values.
+        If there is no such setting, an axis has no values, or they are impossible.
     """
     defaults = default_axes(scene)
     axes: dict[str, Sequence[Any]] = {}
     for text in texts:
         name, given, values = text.partition("=")
+        known = ("mesh", *OF_BODIES, *Material.model_fields, *type(scene.run).model_fields)
+        if name not in known:
+            raise InputError(Mistake(("axes", name), one_of(known, name)))
         if not given and name not in defaults:
             problem = f"give it values, as {name}=1,2; without values {one_of(defaults, name)}"
             raise InputError(Mistake(("axes", name), problem))
         axes[name] = read_values(name, values) if given else defaults[name]
+        if name in ("mesh", "rtol") and not all(is_number(value) and 0 < value < inf for value in axes[name]):
+            raise InputError(Mistake(("axes", name), "must be numbers greater than 0", show(values)))
     return axes
 
 

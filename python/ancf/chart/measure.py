@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterable
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from ancf.chart.axes import Axes, grid, with_few_outputs
 from ancf.chart.labels import Label
-from ancf.chart.points import Lost, Point
+from ancf.chart.points import Lost, Point, Rival
 from ancf.chart.reference import Candidates, Reference
 from ancf.errors import InputError, Mistake
 from ancf.run import Dynamic
@@ -46,6 +47,8 @@ class Chart:
         How often runs were timed: the fewest and the most.
     seconds : float
         What this call took.
+    remarks : tuple of str
+        What else to know about how it was measured.
     """
 
     scene: Scene
@@ -54,6 +57,32 @@ class Chart:
     lost: list[Lost]
     repeats: tuple[int, int]
     seconds: float
+    remarks: tuple[str, ...] = ()
+
+    def beside(self, rivals: Iterable[Rival], *remarks: str) -> Chart:
+        """Return the chart with runs of other programs as further points, their errors against its own reference.
+
+        Parameters
+        ----------
+        rivals : iterable of Rival
+            The runs.
+        *remarks : str
+            How they were measured.
+        """
+        points = [
+            Point(
+                label=rival.label,
+                scene={},
+                own=False,
+                timing=rival.timing,
+                counts={"elements": rival.elements},
+                error=self.reference.error(rival.probes),
+                space=math.nan,
+                time=math.nan,
+            )
+            for rival in rivals
+        ]
+        return replace(self, points=self.points + points, remarks=self.remarks + remarks)
 
 
 def measure(

@@ -240,9 +240,10 @@ def _draw_time(axes: Axes, chart: Chart, style: Style) -> None:
 
 def _draw_counts(key: str, axes: Axes, chart: Chart, style: Style) -> None:
     name = _COUNTS[key]
-    style.scatter(axes, chart.points, lambda point: point.counts[key], _error, scale=0.5)
+    points = [point for point in chart.points if key in point.counts]
+    style.scatter(axes, points, lambda point: point.counts[key], _error, scale=0.5)
     # Explicit methods factorise nothing.
-    explicit = any(point.counts[key] == 0 for point in chart.points)
+    explicit = any(point.counts[key] == 0 for point in points)
     axes.set_xscale("symlog", linthresh=10) if explicit else axes.set_xscale("log")
     axes.set_yscale("log")
     _finish(axes, name, "")

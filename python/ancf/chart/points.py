@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ancf.chart.labels import Label
+from ancf.result import Record
 from ancf.sweep import Timing
 
 LEVELS = (0.1, 0.01, 0.001)
@@ -22,13 +23,13 @@ class Point:
     label : Label
         What it is called.
     scene : mapping
-        Its document.
+        Its document; empty if another program made it.
     own : bool
         Whether it is the scene as it was given.
     timing : Timing
         Its wall time.
     counts : dict of str to int
-        As in `Result`.
+        As in `Result`; of another program's run only `elements`.
     error : float
         Against the reference, relative to the size of the motion.
     space, time : float
@@ -49,6 +50,28 @@ class Point:
     def elements(self) -> int:
         """How many elements."""
         return self.counts["elements"]
+
+
+@dataclass(frozen=True)
+class Rival:
+    """A run of the same scene by another program.
+
+    Parameters
+    ----------
+    label : Label
+        What it is called.
+    elements : int
+        How many elements.
+    timing : Timing
+        Its wall time.
+    probes : mapping of str to Record
+        The scene's probes at the outputs of the chart.
+    """
+
+    label: Label
+    elements: int
+    timing: Timing
+    probes: Mapping[str, Record]
 
 
 @dataclass(frozen=True)

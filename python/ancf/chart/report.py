@@ -114,6 +114,7 @@ def _about_measuring(chart: Chart) -> list[str]:
         f"Wall time: one thread, each run alone on the machine, all runs in random order, {times}; the shortest "
         "counts. Set-up and results are included, the start of the process is not.",
         "Errors and counts come from an earlier run, several at a time.",
+        *chart.remarks,
     ]
 
 
@@ -207,7 +208,7 @@ def _datum(point: Point, wins: list[str]) -> dict[str, Any]:
         "seconds": point.timing.best,
         "repeats": len(point.timing.seconds),
         **{name: point.counts[name] for name in _COUNTS if name in point.counts},
-        "toml": _excerpt(point.scene),
+        "toml": _excerpt(point.scene) if point.scene else None,
     }
 
 
@@ -218,7 +219,11 @@ def _null(value: float) -> float | None:
 def _excerpt(scene: Mapping[str, Any]) -> str:
     """Return the lines of the scene file that the settings are in."""
     bodies = {name: _only(body, _OF_BODIES) for name, body in scene["body"].items()}
-    text = tomli_w.dumps({"body": bodies, "run": _only(scene["run"], _OF_RUN)})
+    run = _only(scene["run"], _OF_RUN)
+    text = tomli_w.dumps({"body": bodies} | ({"run": run} if run else {}))
+    # A run has one of both.
+    for name, other in (("step", "rtol"), ("rtol", "step")):
+        text = text.replace(f"\n{name} = ", f"\n# instead of {other}:\n{name} = ")
     # Short lists read better in one line.
     return text.replace("[\n    ", "[").replace(",\n    ", ", ").replace(",\n]", "]")
 

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ancf.commands import OK
+from ancf.commands import OK, positive, seconds
 from ancf.commands.sweeping import add_sweep_arguments, executor
 from ancf.output import make_folder
 from ancf.scene import load_scene
@@ -36,9 +36,11 @@ def add(commands: Subparsers) -> None:
         "scene) method=hht,rk rtol step newton, or any other key of [body], [material] and [run] with its values",
     )
     parser.add_argument(
-        "--budget", type=float, default=240.0, metavar="SECONDS", help="about how long it may take (default: 240)"
+        "--budget", type=seconds, default=240.0, metavar="SECONDS", help="about how long it may take (default: 240)"
     )
-    parser.add_argument("--repeats", type=int, default=3, metavar="N", help="how often each run is timed (default: 3)")
+    parser.add_argument(
+        "--repeats", type=positive, default=3, metavar="N", help="how often each run is timed (default: 3)"
+    )
     add_sweep_arguments(parser)
     parser.set_defaults(call=call)
 

@@ -7,9 +7,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ancf.commands import OK, positive
+from ancf.commands import NOT_PROMISED, OK, complain, positive
 from ancf.output import make_folder, remove_folders
-from ancf.plan import BUDGET, Plan, plan
+from ancf.plan import Plan, plan
 
 if TYPE_CHECKING:
     from ancf.commands import Subparsers
@@ -46,7 +46,10 @@ def add_options(parser: argparse.ArgumentParser, tol: float | None) -> None:
         "--want", action="append", metavar="PROBE", help="plan: what must be precise; default: all probes"
     )
     parser.add_argument(
-        "--budget", type=_number, default=BUDGET, metavar="S", help=f"plan: seconds it may take; default: {BUDGET:g}"
+        "--budget",
+        type=_number,
+        metavar="S",
+        help="plan: seconds it may take; default: 50 times what the scene as written should take, from 20 to 300",
     )
 
 
@@ -63,8 +66,18 @@ def _number(text: str) -> float:
 def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
     folder = options.output or Path(f"{options.scene.stem}-plan")
-    make_plan(options, folder)
-    return OK
+    return promise(make_plan(options, folder), folder)
+
+
+def promise(found: Plan, folder: Path) -> int:
+    """Return the exit status of a plan; complain if its estimates do not reach the tolerance."""
+    if found.converged:
+        return OK
+    error = found.error + found.error_in_time
+    message = (
+        f"the tolerance {found.tol:g} is not reached: the estimated error is {error:.2g}; {folder} has the best found"
+    )
+    return complain(message, NOT_PROMISED)
 
 
 def make_plan(options: argparse.Namespace, folder: Path) -> Plan:

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ancf.commands import OK
+from ancf.commands import OK, positive, seconds
 from ancf.commands.sweeping import add_sweep_arguments, executor
 from ancf.output import make_folder
 
@@ -27,9 +27,11 @@ def add(commands: Subparsers) -> None:
     parser.add_argument("study", choices=_STUDIES)
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="folder for the report")
     parser.add_argument("--quick", action="store_true", help="coarse meshes only, to see that it works")
-    parser.add_argument("--repeats", type=int, default=5, metavar="N", help="how often each run is timed (default: 5)")
     parser.add_argument(
-        "--limit", type=float, default=300.0, metavar="SECONDS", help="when a run is stopped (default: 300)"
+        "--repeats", type=positive, default=5, metavar="N", help="how often each run is timed (default: 5)"
+    )
+    parser.add_argument(
+        "--limit", type=seconds, default=300.0, metavar="SECONDS", help="when a run is stopped (default: 300)"
     )
     add_sweep_arguments(parser)
     parser.set_defaults(call=call)

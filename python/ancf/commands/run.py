@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ancf.commands import FAILED, INTERRUPTED, OK, complain, positive
-from ancf.commands.plan import add_options, make_plan
+from ancf.commands.plan import add_options, make_plan, promise
 from ancf.commands.signals import deferred_signals
 from ancf.errors import InputError, Interrupted, Mistake
 from ancf.fields import check_fields
@@ -88,7 +88,7 @@ def call(options: argparse.Namespace) -> int:
         print(describe(scene.title, result))
     if result.status == "failed":
         return complain(f"the run failed: {result.reason}\ntry: {result.advice}", FAILED)
-    return OK
+    return OK if planned is None else promise(planned, folder)
 
 
 def _write_extras(options: argparse.Namespace, title: str, result: Result | ModalResult, film: Path | None) -> None:

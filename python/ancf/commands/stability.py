@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ancf.commands import FAILED, OK, complain
+from ancf.commands import FAILED, OK, complain, seconds
 from ancf.commands.sweeping import add_sweep_arguments, executor
 from ancf.errors import InputError, Mistake
 from ancf.output import make_folder
@@ -38,9 +38,9 @@ def add(commands: Subparsers) -> None:
         help="the stiffness parameter: E (default), thickness, mesh, viscosity, with values if wanted: E=1e5,1e7",
     )
     parser.add_argument("--methods", nargs="+", metavar="NAME", help="default: six of them")
-    parser.add_argument("--steps", nargs="+", type=float, metavar="SECONDS", help="default: the motion in 10 to 640")
+    parser.add_argument("--steps", nargs="+", type=seconds, metavar="SECONDS", help="default: the motion in 10 to 640")
     parser.add_argument(
-        "--limit", type=float, default=60.0, metavar="SECONDS", help="when a run is stopped (default: 60)"
+        "--limit", type=seconds, default=60.0, metavar="SECONDS", help="when a run is stopped (default: 60)"
     )
     add_sweep_arguments(parser)
     parser.set_defaults(call=call)

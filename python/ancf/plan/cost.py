@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +19,16 @@ from ancf.model import Model
 from ancf.places import EDGES
 from ancf.plan.ladder import CONTINUOUS, THIN, Family, Rung
 from ancf.plan.pilots import Pilot
+from ancf.run import Dynamic, Static
+from ancf.scene import Scene
 from ancf.solve import simulate
 from ancf.supports import Support
 
 _SIDES = (1, 3, 8, 20)
 """Elements along a side of the square plates that are timed."""
 _STEPS = 6
+_ITERATIONS, _STEPS_OF_LOAD = 3.0, 2.0
+"""Iterations of an implicit step, and steps to a load factor, of scenes that were not run."""
 _FEWEST_THREADED = 65
 """Elements: fewer are one task, which more threads do not help."""
 
@@ -92,6 +96,13 @@ class Costs:
         setup = pilot.result.seconds["setup"]
         return self.setup(rung) + max(pilot.seconds - setup, 0.0) * self.ratio(rung, pilot)
 
+    def steps(self, rung: Rung, steps: float, *, explicit: bool) -> float:
+        """Return about the seconds of some steps, or steps of load; other families cost as those most like them."""
+        if rung.family not in self._rates:
+            rung = replace(rung, family=THIN[-1] if rung.family.element == THIN[-1].element else CONTINUOUS)
+        work = self._of("force", rung) if explicit else _ITERATIONS * self._of("iteration", rung)
+        return self.setup(rung) + steps * work
+
     def _of(self, kind: str, rung: Rung) -> float:
         rates = self._rates.get(rung.family, self._rates[CONTINUOUS])
         return rates.at(kind, rung.elements)
@@ -132,6 +143,18 @@ def calibrated(folder: Path | None = None) -> Costs:
         # Without the file they are measured again the next time.
         pass
     return Costs(rates)
+
+
+def as_written(scene: Scene, costs: Costs) -> float | None:
+    """Return about the seconds of a scene as it is written; None where error control sets its steps."""
+    bodies = list(scene.model.bodies.values())
+    rung = Rung(Family(bodies[0].element, bodies[0].membrane), tuple(body.divisions for body in bodies))
+    run = scene.run
+    if isinstance(run, Static):
+        return costs.steps(rung, _STEPS_OF_LOAD * len(run.load_factors), explicit=False)
+    if not isinstance(run, Dynamic) or run.step is None or run.method == "rigid":
+        return None
+    return costs.steps(rung, run.until / run.step, explicit=run.method in ("verlet", "rk"))
 
 
 def _tuples(values: dict[str, list[float]]) -> dict[str, Any]:

@@ -11,9 +11,13 @@ from ancf.bodies import NODAL_VECTORS, Plate
 from ancf.model import Model
 from ancf.run import Dynamic, Method
 from ancf.scene import Scene
+from ancf.supports import Support
 
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 """Elements along a side, times the fewest that put nodes where supports need them."""
+
+LOOSEST = 0.1
+"""Error control with a larger tolerance controls nothing."""
 
 _FINEST_BASE = 16
 
@@ -92,6 +96,13 @@ class Stepping:
         assert self.rtol is not None
         return replace(self, rtol=max(self.rtol / 4, 1e-12))
 
+    def longer(self, factor: float) -> Stepping | None:
+        """Return one of about `factor` times the length, a tolerance as many times squared; None if it is too loose."""
+        if self.step is not None:
+            return replace(self, step=self.step * factor)
+        assert self.rtol is not None
+        return replace(self, rtol=self.rtol * factor**2) if self.rtol * factor**2 <= LOOSEST else None
+
     def __str__(self) -> str:
         length = f"step {self.step:.3g} s" if self.step is not None else f"rtol {self.rtol:.2g}"
         return f"{self.method}, {length}{', reuse' if self.reuse else ''}"
@@ -159,7 +170,11 @@ def apply(scene: Scene, choice: Choice) -> Scene:
         name: _remake(body, rung.family, divisions)
         for (name, body), divisions in zip(model.bodies.items(), rung.divisions, strict=True)
     }
-    made = Model(bodies=bodies, supports=model.supports, loads=model.loads, probes=model.probes)
+    supports = [
+        _fitting(support, bodies[support.body] if support.body else next(iter(bodies.values())))
+        for support in model.supports
+    ]
+    made = Model(bodies=bodies, supports=supports, loads=model.loads, probes=model.probes)
     run = scene.run
     if stepping is not None:
         assert isinstance(run, Dynamic)
@@ -174,6 +189,13 @@ def apply(scene: Scene, choice: Choice) -> Scene:
             **outputs(run),
         )
     return replace(scene, model=made, run=run)
+
+
+def _fitting(support: Support, body: Plate) -> Support:
+    """Return a support without the vectors that the element does not have."""
+    known = NODAL_VECTORS[body.element]
+    fix = [name for name in support.fix if name.partition(".")[0] in known]
+    return support if len(fix) == len(support.fix) else support.model_copy(update={"fix": fix})
 
 
 def _remake(body: Plate, family: Family, divisions: tuple[int, int]) -> Plate:

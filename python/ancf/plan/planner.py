@@ -10,7 +10,7 @@ import numpy as np
 
 from ancf.errors import InputError, Mistake, Mistakes, one_of, show
 from ancf.model import Model
-from ancf.plan.cost import Costs, calibrated
+from ancf.plan.cost import Costs, as_written, calibrated
 from ancf.plan.errors import Values, distance, scales
 from ancf.plan.ladder import RIGID, Choice, Family, Rung, Stepping, apply, coarsest, families
 from ancf.plan.pilots import Pilot, Pilots
@@ -25,9 +25,9 @@ from ancf.run import Dynamic, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import solve
 
-BUDGET = 300.0
-"""Seconds that a plan may take if nothing is said."""
-_RIGID_SHARE = 0.5
+LEAST, MOST, PROPORTION = 20.0, 300.0, 50.0
+"""Seconds that a plan may take if nothing is said: at least, at most, and relative to the scene as written."""
+_RIGID_SHARE = 0.7
 """Part of the tolerance below which the estimated deflection of a rigid body is no matter."""
 _SYMMETRIC = 0.2
 """Part of the tolerance that the whole of a symmetric scene may be off its half."""
@@ -40,7 +40,7 @@ def plan(
     run: Static | Dynamic | None = None,
     want: str | Sequence[str] | None = None,
     tol: float = 1e-2,
-    budget: float = BUDGET,
+    budget: float | None = None,
     threads: int | None = None,
 ) -> Plan:
     """Find the cheapest settings of a scene for which the error in what is wanted stays below a tolerance.
@@ -58,8 +58,9 @@ def plan(
     tol : float, default 1e-2
         Largest error that is allowed of each of them, over all recorded states, relative to the largest change of the
         quantity from the first state. From 1e-6 to below 1.
-    budget : float, default 300
-        Seconds after which pilots end; the plan then says what it can promise.
+    budget : float, optional
+        Seconds after which pilots end; the plan then says what it can promise. If left out, 50 times what the scene
+        as it is written should take, but from 20 to 300.
     threads : int, optional
         For the pilots; all if left out.
 
@@ -79,14 +80,23 @@ def plan(
     names = _wanted(scene, want)
     _check(scene, tol, budget)
     costs = calibrated()
+    written = as_written(scene, costs)
+    if budget is None:
+        budget = MOST if written is None else min(max(PROPORTION * written, LEAST), MOST)
     pilots = Pilots(scene, names, budget, threads)
+    return replace(_planned(scene, pilots, names, costs, tol), budget=budget, seconds_as_written=written)
+
+
+def _planned(scene: Scene, pilots: Pilots, names: list[str], costs: Costs, tol: float) -> Plan:
+    """Plan it as rigid bodies, as the half of a symmetric scene, or as a whole."""
+    allowed = families(scene.model)
     if isinstance(scene.run, Dynamic):
-        rigid, bent = _rigid(pilots, coarsest(scene.model), families(scene.model)[0], tol)
+        rigid, bent = _rigid(pilots, coarsest(scene.model), allowed[0], tol)
         if rigid is not None and max(bent) <= _RIGID_SHARE * tol:
             return _as_rigid(scene, pilots, rigid, max(bent), tol)
     part, mirrors = halved(scene)
     if mirrors:
-        found = _flexible(Pilots(part, names, pilots.left / 2, threads), costs, tol)
+        found = _flexible(Pilots(part, names, pilots.left / 2, pilots.threads), allowed, costs, tol)
         off = _asymmetry(pilots, found, mirrors)
         sides = " and ".join("xy"[axis] for axis in mirrors)
         reason = f"The scene is symmetric across the middle of {sides}: the low half is enough"
@@ -95,7 +105,7 @@ def plan(
             return replace(found, reasons=reasons, converged=False, seconds=pilots.spent)
         if off <= _SYMMETRIC * tol:
             return replace(found, reasons=[*found.reasons, f"{reason}, to {off:.1g}."], seconds=pilots.spent)
-    return _flexible(pilots, costs, tol)
+    return _flexible(pilots, allowed, costs, tol)
 
 
 def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float | None:
@@ -112,18 +122,17 @@ def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float | None:
     return distance(whole.values, values, scales(values))
 
 
-def _flexible(pilots: Pilots, costs: Costs, tol: float) -> Plan:
+def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: float) -> Plan:
     """Plan a scene whose bodies deform."""
     scene = pilots.scene
-    allowed = families(scene.model)
     base = coarsest(scene.model)
     timings = _timings(pilots, allowed, base, tol) if isinstance(scene.run, Dynamic) else []
     search = Search(pilots, costs, allowed, base, tol, timings)
-    first = _first_family(search)
-    if first is None or not search.up(first):
+    if not search.up(_to_refine(search)):
         raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
     scale = _scales(search.exact, pilots.want)
     search.down()
+    search.settle()
     chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
     in_space = search.observed()[chosen.choice]
     chosen, in_time = _check_time(search, chosen, scale, search.tol - in_space)
@@ -158,9 +167,12 @@ def _wanted(scene: Scene, want: str | Sequence[str] | None) -> list[str]:
     return names
 
 
-def _check(scene: Scene, tol: float, budget: float) -> None:
+def _check(scene: Scene, tol: float, budget: float | None) -> None:
     mistakes = Mistakes()
-    for name, value, low, high in (("tol", tol, 1e-6, 1.0), ("budget", budget, 0.0, np.inf)):
+    limits = [("tol", tol, 1e-6, 1.0)]
+    if budget is not None:
+        limits.append(("budget", budget, 0.0, np.inf))
+    for name, value, low, high in limits:
         number = isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value)
         if not number or not low <= value < high or value <= 0:
             allowed = "a number from 1e-6 to below 1" if name == "tol" else "a number of seconds greater than 0"
@@ -203,7 +215,9 @@ def _rigid(
     assert isinstance(again.run, Dynamic)
     result = solve(again.model, again.run, threads=1, throw=False)
     elastic = apply(pilots.scene, Choice(finer)).model
-    bent = dict(zip((p.name for p in elastic.probes), deflection(elastic, result), strict=True))
+    names = [probe.name for probe in elastic.probes]
+    limits = [_RIGID_SHARE * tol * dict(zip(pilots.want, scale, strict=True)).get(name, np.inf) for name in names]
+    bent = dict(zip(names, deflection(elastic, result, limits), strict=True))
     return pilot, [bent[name] / size for name, size in zip(pilots.want, scale, strict=True)]
 
 
@@ -250,8 +264,8 @@ def _timings(
     raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
 
 
-def _first_family(search: Search) -> Family | None:
-    """Return the family that changes least when the coarsest mesh is refined, and then agrees best with another.
+def _to_refine(search: Search) -> list[Family]:
+    """Return of each element the family that changes least when the coarsest mesh is refined and agrees with others.
 
     Agreement matters because what locks hardly changes either.
     """
@@ -268,7 +282,7 @@ def _first_family(search: Search) -> Family | None:
             _scales(fine[family], search.pilots.want)
             cheapest = min(cheapest, pilot.seconds)
     if not fine:
-        return None
+        return []
     scale = [max(sizes) for sizes in zip(*(scales(values) for values in fine.values()), strict=True)]
 
     def doubt(family: Family) -> float:
@@ -276,12 +290,15 @@ def _first_family(search: Search) -> Family | None:
         others = [distance(fine[family], values, scale) for other, values in fine.items() if other != family]
         return change + min(others, default=0.0)
 
-    return min(fine, key=doubt)
+    elements = dict.fromkeys(family.element for family in fine)
+    return [min((family for family in fine if family.element == element), key=doubt) for element in elements]
 
 
 def _check_time(search: Search, chosen: Pilot, scale: Sequence[float], allowed: float) -> tuple[Pilot, float]:
     """Repeat the choice with tighter steps until they no longer matter; return it with its error in time, relative."""
-    error = 0.0
+    stepping = chosen.choice.stepping
+    # Where there is no time to check it, what was found on a coarse mesh must do.
+    error = max((t.error for t in search.timings if t.stepping == stepping), default=SHARE * search.tol)
     for _ in range(_CHECKS):
         stepping = chosen.choice.stepping
         if stepping is None:
@@ -324,7 +341,7 @@ def _report(
         why = (
             "differences hardly shrink as the mesh is refined, as at a singular point or where the motion is chaotic"
             if slow
-            else "the budget or the largest mesh was reached"
+            else "the budget (--budget) or the largest mesh was reached"
         )
         reasons.append(
             f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.2g}."

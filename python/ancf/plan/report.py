@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ancf.output import replacing
 from ancf.plan.ladder import Choice
 from ancf.result import Result
@@ -75,6 +77,10 @@ class Plan:
         What the chosen run was predicted to take.
     threads : int or None
         How many help it; None for all.
+    budget : float
+        Seconds that the plan was allowed.
+    seconds_as_written : float or None
+        What the run of the scene as it was written should have taken; None where that cannot be told.
     """
 
     scene: Scene = field(repr=False)
@@ -91,6 +97,8 @@ class Plan:
     seconds: float
     predicted_seconds: float
     threads: int | None
+    budget: float = np.inf
+    seconds_as_written: float | None = None
 
     @property
     def choice(self) -> str:
@@ -114,10 +122,10 @@ class Plan:
         lines.append(f"* {self.choice}")
         lines += [f"  {reason}" for reason in self.reasons]
         lines.append(f"  Errors are relative to the largest change of what is wanted: {wants}. Tolerance {self.tol:g}.")
-        lines.append(
-            f"  The plan took {self.seconds:.2g} s, the chosen run {self.rows[self.chosen].seconds:.2g} s "
-            f"(predicted {self.predicted_seconds:.2g} s)."
-        )
+        chosen = f"{self.rows[self.chosen].seconds:.2g} s (predicted {self.predicted_seconds:.2g} s)"
+        lines.append(f"  The plan took {self.seconds:.2g} s of at most {self.budget:.2g} s, the chosen run {chosen}.")
+        if self.seconds_as_written is not None:
+            lines.append(f"  The scene as it was written would take about {self.seconds_as_written:.2g} s.")
         return lines
 
     def document(self) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,7 +21,7 @@ _MOST_COORDINATES = 1500
 _HELD = 1e-9
 
 
-def deflection(model: Model, rigid: Result) -> list[float]:
+def deflection(model: Model, rigid: Result, limits: Sequence[float] | None = None) -> list[float]:
     """Estimate how far each probe is from where a rigid motion has it.
 
     At moments of the rigid motion the loads and the inertia act on the elastic body as if they stayed.
@@ -30,6 +32,8 @@ def deflection(model: Model, rigid: Result) -> list[float]:
         The elastic bodies, on the mesh of `rigid`.
     rigid : Result
         Their motion as rigid bodies.
+    limits : sequence of float, optional
+        For each probe, what is too much: nothing more is estimated once one is beyond it.
 
     Returns
     -------
@@ -61,6 +65,8 @@ def deflection(model: Model, rigid: Result) -> list[float]:
         for index, probe in enumerate(model.probes):
             value = model.evaluate(probe.body, [probe.at], probe.quantity, states, velocities)[:, 0]
             worst[index] = max(worst[index], float(np.linalg.norm(value[1] - value[0])))
+        if limits is not None and (worst > np.asarray(limits)).any():
+            break
     return [float(x) if np.isfinite(x) else np.inf for x in worst]
 
 

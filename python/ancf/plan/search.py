@@ -9,8 +9,10 @@ from itertools import product
 
 import numpy as np
 
+from ancf.plan.climb import Climb
 from ancf.plan.cost import Costs
 from ancf.plan.errors import RATES, Side, Values, distance, scales
+from ancf.plan.guess import Guess, fit
 from ancf.plan.ladder import COUNTS, RIGID, Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.timing import SHARE, Timing
@@ -41,8 +43,18 @@ _AGREED = 0.6
 """Part of the tolerance up to which another element on the finest mesh may be off."""
 _DOWN = 0.4
 """Time for each part of the way down, relative to the time before."""
-_HOPE = 5.0
+_HOPE = 3.0
 """Errors, relative to the tolerance, that may be too large only by the model that guesses them."""
+_RIVAL = 2.0
+"""Cost of another stepping, predicted and observed, relative to the one that was run, up to which it is kept."""
+_RACE = 0.05
+"""Part of the time left that such a run may take."""
+_AFFORDED = 0.5
+"""Part of the time left that a rung on the way up may take: what is chosen of it must be checked, too."""
+_NEAR, _SHORT = 1.5, 0.1
+"""Times the cheapest, and seconds, up to which a run is repeated before one is chosen."""
+_LONGER = (2.0, 1.5)
+"""Times the steps of the cheapest rung that are tried last."""
 _LARGEST = 20_000
 """Elements of the finest rung."""
 
@@ -74,12 +86,9 @@ class Search:
     tol: float
     timings: list[Timing] = field(default_factory=list)
     predicted: dict[Choice, float] = field(default_factory=dict)
-    sides: dict[tuple[int, int], Side] = field(default_factory=dict)
     allowed: list[Stepping] = field(default_factory=list)
     guessed: dict[Choice, float] = field(default_factory=dict)
-    best: Rung = field(init=False)
-    exact: Values = field(init=False)
-    own: float = field(init=False)
+    climbs: list[Climb] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         """Allow the steppings that are good enough; those that replace them are allowed later."""
@@ -90,11 +99,51 @@ class Search:
         """The error in space that the choice may have: in motion a share is left for that in time."""
         return (1.0 - SHARE if self.timings else 1.0) * self.tol
 
+    @property
+    def lead(self) -> Climb:
+        """The climb with the smallest error."""
+        return min((climb for climb in self.climbs if climb.rung is not None), key=lambda climb: climb.own)
+
+    @property
+    def best(self) -> Rung:
+        """The finest rung of the leading climb."""
+        assert self.lead.rung is not None
+        return self.lead.rung
+
+    @property
+    def exact(self) -> Values:
+        """What is known best of the wanted quantities."""
+        return self.lead.exact
+
+    @property
+    def own(self) -> float:
+        """The error of `exact`, relative."""
+        return self.lead.own
+
+    @property
+    def sides(self) -> dict[tuple[int, int], Side]:
+        """What is known along the sides of `best`."""
+        return self.lead.sides
+
     def stepping(self, rung: Rung) -> Stepping | None:
         """Return the stepping that is predicted to be the cheapest on a rung; None in statics."""
         if not self.timings:
             return None
-        return min(self.timings, key=lambda timing: self.costs.predict(rung, timing.pilot)).stepping
+        return min(self.timings, key=lambda timing: self._predict(rung, timing)).stepping
+
+    def _predict(self, rung: Rung, timing: Timing) -> float:
+        """Return the seconds of a rung with a stepping, from the pilot with it that is most like the rung."""
+        like = self._like(rung, timing.stepping)
+        return self.costs.predict(rung, like if like is not None else timing.pilot)
+
+    def _like(self, rung: Rung, stepping: Stepping | None) -> Pilot | None:
+        like = [p for p in self.pilots.done if p.ok and p.choice.stepping == stepping]
+
+        def unlike(pilot: Pilot) -> tuple[float, bool]:
+            other = pilot.choice.rung
+            return abs(np.log(other.elements / rung.elements)), other.family != rung.family
+
+        return min(like, key=unlike, default=None)
 
     def choice(self, rung: Rung) -> Choice:
         """Return the rung with the stepping that is predicted to be the cheapest."""
@@ -127,16 +176,8 @@ class Search:
 
     def predict(self, rung: Rung) -> float | None:
         """Return the seconds that a rung should take, from the pilot that is most like it."""
-        stepping = self.stepping(rung)
-        like = [p for p in self.pilots.done if p.ok and p.choice.stepping == stepping and p.choice.rung != rung]
-        if not like:
-            return None
-
-        def unlike(pilot: Pilot) -> tuple[bool, float]:
-            other = pilot.choice.rung
-            return other.family != rung.family, abs(np.log(other.elements / rung.elements))
-
-        return self.costs.predict(rung, min(like, key=unlike))
+        like = self._like(rung, self.stepping(rung))
+        return None if like is None else self.costs.predict(rung, like)
 
     def values(self, rung: Rung) -> Values | None:
         """Return the wanted quantities of a rung if it has been run, with any stepping that is good enough."""
@@ -144,49 +185,76 @@ class Search:
         found = (self.pilots.known(choice) for choice in choices)
         return next((pilot.values for pilot in found if pilot is not None), None)
 
-    def up(self, family: Family) -> bool:
-        """Refine until the error left is a part of the tolerance.
+    def up(self, families: Sequence[Family]) -> bool:
+        """Refine several families, the one whose next rung is the cheapest, until one has a part of the tolerance left.
+
+        Elements converge at different rates, and which is the better one shows only on the way.
 
         Parameters
         ----------
-        family : Family
+        families : sequence of Family
             What to refine.
 
         Returns
         -------
         bool
-            Whether any rung reached its end; `best`, `exact` and `own` are then set.
+            Whether any rung reached its end; `best`, `exact` and `own` are then known.
         """
-        rung = _doubled(Rung(family, self.base))
-        last: Rung | None = None
-        stalled = 0
-        while True:
-            if self.climb(rung).ok:
-                before = self.own if last is not None else np.inf
-                self._learn(rung, last)
-                last = rung
-                stalled = stalled + 1 if self.own > before * 2.0**-_STALLED else 0
-                finer = self._refined(rung)
-                if self.own <= BEST * self.tol and self._confirmed(rung):
-                    return True
-            else:
-                if last is not None:
-                    return True
-                finer = _doubled(rung)
-            if finer.elements > _LARGEST or (self.predict(finer) or 0.0) > self.pilots.left or stalled > _PATIENCE:
-                return last is not None
-            rung = finer
+        self.climbs = [Climb(_doubled(Rung(family, self.base))) for family in families]
+        while going := [climb for climb in self.climbs if not climb.ended]:
+            self._step(min(going, key=lambda climb: self.predict(climb.next) or 0.0))
+            if any(climb.rung for climb in self.climbs) and self.own <= BEST * self.tol and self._confirmed(self.best):
+                break
+        return any(climb.rung for climb in self.climbs)
 
-    def _learn(self, rung: Rung, last: Rung | None) -> None:
+    def _step(self, climb: Climb) -> None:
+        """Run the next rung of a climb and learn from it, or end the climb."""
+        rung = climb.next
+        if (
+            rung.elements > _LARGEST
+            or (self.predict(rung) or 0.0) > _AFFORDED * self.pilots.left
+            or climb.stalled > _PATIENCE
+        ):
+            climb.ended = True
+        elif self.climb(rung).ok:
+            before = climb.own
+            self._learn(climb)
+            climb.stalled = climb.stalled + 1 if climb.own > before * 2.0**-_STALLED else 0
+            climb.next = self._refined(climb)
+            self._race(rung)
+        elif climb.rung is None and self.pilots.left > 0.0:
+            climb.next = _doubled(rung)
+        else:
+            climb.ended = True
+
+    def _race(self, rung: Rung) -> None:
+        """Run a small rung with the other steppings that may be cheaper, and forget those that were much slower.
+
+        An implicit one that is slower than an explicit one is kept: it may be cheaper on finer meshes.
+        """
+        if rung.elements > _COMPARED:
+            return
+        first = self.stepping(rung)
+        limit = _RIVAL * self._seconds(rung)
+        for timing in list(self.timings):
+            if timing.stepping == first or self._predict(rung, timing) > limit:
+                continue
+            pilot = self.pilots.run(Choice(rung, timing.stepping), min(limit, _RACE * self.pilots.left))
+            # Explicit steps only lose more on finer meshes.
+            if not pilot.ok and (timing.stepping.explicit or not (first and first.explicit)):
+                self.timings.remove(timing)
+
+    def _learn(self, climb: Climb) -> None:
         """Set the finest rung, what is known along its sides, the extrapolated values and what they lack.
 
         Small rungs are compared with their neighbours that are coarser along one side. Of larger ones only the last
         rung is at hand: its difference is shared out along the sides that were refined as the errors were before.
         """
+        rung, last = climb.next, climb.rung
         values = self.values(rung)
         assert values is not None
         scale = scales(values)
-        before = dict(self.sides)
+        before = dict(climb.sides)
         refined = [side for side in rung.sides() if last is None or _count(rung, side) > _count(last, side)]
         if last is None or rung.elements <= _COMPARED:
             for side in rung.sides():
@@ -202,7 +270,7 @@ class Search:
                 rate = old.rate if old else None
                 if old is not None and side in refined:
                     rate = _rate(old.difference, difference)
-                self.sides[side] = Side(difference, rate)
+                climb.sides[side] = Side(difference, rate)
         else:
             coarse = self.values(last)
             assert coarse is not None
@@ -211,51 +279,55 @@ class Search:
             share = sum(expected.values())
             for side in refined:
                 part = total * expected.get(side, 0.0) / share if share else total
-                self.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
-        self.best, self.exact = rung, values
-        self.own = sum(side.error for side in self.sides.values()) if self.sides else np.inf
+                climb.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
+        climb.rung, climb.exact = rung, values
+        climb.own = sum(side.error for side in climb.sides.values()) if climb.sides else np.inf
         if last is not None and refined:
-            self._extrapolate(values, last, scale, refined)
+            self._extrapolate(climb, last, scale, refined)
 
-    def _extrapolate(self, values: Values, last: Rung, scale: Sequence[float], refined: list[tuple[int, int]]) -> None:
+    def _extrapolate(self, climb: Climb, last: Rung, scale: Sequence[float], refined: list[tuple[int, int]]) -> None:
         """Where the sides refined last converge at a known rate, take out the error that it tells of."""
-        rates = [self.sides[side].rate for side in refined]
+        rates = [climb.sides[side].rate for side in refined]
         known = [rate for rate in rates if rate is not None]
         coarse = self.values(last)
         if coarse is None or len(known) < len(rates) or min(known) < RATES[0] * 2:
             return
         factor = 1.0 / (2.0 ** min(*known, RATES[1]) - 1.0)
-        self.exact = [fine + factor * (fine - old) for fine, old in zip(values, coarse, strict=True)]
+        values = climb.exact
+        climb.exact = [fine + factor * (fine - old) for fine, old in zip(values, coarse, strict=True)]
         removed = factor * distance(values, coarse, scale)
-        self.own = max(self.own - (1 - _TRUST) * removed, _TRUST * self.own)
+        climb.own = max(climb.own - (1 - _TRUST) * removed, _TRUST * climb.own)
 
     def _confirmed(self, rung: Rung) -> bool:
         """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing."""
+        lead = self.lead
         order = sorted(self.families, key=lambda family: family.element == rung.family.element)
         for family in order:
             if family == rung.family:
                 continue
             pilot = self.run(replace(rung, family=family), 6 * self._seconds(rung))
             if pilot.ok:
-                other = distance(pilot.values, self.exact, scales(self.exact))
-                if other > max(_AGREED * self.tol, 3 * self.own):
-                    self.own = max(self.own, other / 2)
+                other = distance(pilot.values, lead.exact, scales(lead.exact))
+                if other > max(_AGREED * self.tol, 3 * lead.own):
+                    lead.own = max(lead.own, other / 2)
                 break
-        return self.own <= BEST * self.tol
+        return lead.own <= BEST * self.tol
 
     def _seconds(self, rung: Rung) -> float:
         pilot = self.pilots.known(self.choice(rung))
         return pilot.seconds + 0.02 if pilot else np.inf
 
-    def _refined(self, rung: Rung) -> Rung:
+    def _refined(self, climb: Climb) -> Rung:
         """Double the elements along the sides whose error dominates."""
-        if not self.sides:
+        rung = climb.next
+        errors = {at: side.error for at, side in climb.sides.items()}
+        if max(errors.values(), default=0.0) <= _SMALL_SIDE * self.tol:
             return _doubled(rung)
-        worst = max(side.error for side in self.sides.values())
-        for at, side in self.sides.items():
-            if side.error >= _DOMINANT * worst and side.error > _SMALL_SIDE * self.tol:
+        worst = max(errors.values())
+        for at, error in errors.items():
+            if error >= _DOMINANT * worst and error > _SMALL_SIDE * self.tol:
                 rung = rung.scaled(at, Fraction(2)) or rung
-        return rung if any(side.error > _SMALL_SIDE * self.tol for side in self.sides.values()) else _doubled(rung)
+        return rung
 
     def down(self) -> None:
         """Look for cheaper rungs below the finest: first those that promise most, then all that might do, cheap first.
@@ -266,13 +338,13 @@ class Search:
         for _ in range(_TRIALS):
             limit = self._limit()
             trial = self._trial(limit)
-            if trial is None or self.pilots.spent > (1 + _DOWN) * start:
+            if trial is None or self.pilots.spent > (1 + _DOWN) * start or self.pilots.left <= 0.0:
                 break
             self._try(trial, 1.5 * limit + 0.02)
         start = self.pilots.spent
         for cost, rung in self._cheap():
             limit = self._limit()
-            if cost > _WORTH * limit or self.pilots.spent > (1 + _DOWN) * start:
+            if cost > _WORTH * limit or self.pilots.spent > (1 + _DOWN) * start or self.pilots.left <= 0.0:
                 break
             self._try(rung, limit + 0.02)
         self._lengthen()
@@ -281,13 +353,30 @@ class Search:
         self.guessed[self.choice(rung)] = self._guess(rung.family)(rung) + self.own
         self.run(rung, limit)
 
-    def _lengthen(self) -> None:
-        """Try on the cheapest rung the longer steps that finer or other rungs could not be solved with."""
+    def settle(self) -> None:
+        """Repeat the short runs among which the cheapest is chosen."""
         current = self.cheapest(self.observed())
-        for stepping in self.allowed if current is not None else []:
-            assert current is not None
+        for pilot in self._good(self.observed()):
+            if current is not None and pilot.seconds <= _NEAR * current.seconds and pilot.seconds <= _SHORT:
+                self.pilots.again(pilot)
+
+    def _lengthen(self) -> None:
+        """Try other and longer steps on the cheapest rung: those it was chosen for are small enough on a coarse one."""
+        current = self.cheapest(self.observed())
+        if current is None or current.choice.stepping is None:
+            return
+        for stepping in self.allowed:
             if stepping != current.choice.stepping:
                 self.pilots.run(replace(current.choice, stepping=stepping), _WORTH * self._limit())
+        for factor in _LONGER:
+            current = self.cheapest(self.observed())
+            assert current is not None
+            assert current.choice.stepping is not None
+            longer = current.choice.stepping.longer(factor)
+            if longer is None:
+                break
+            self.allowed.append(longer)
+            self.pilots.run(replace(current.choice, stepping=longer), self._limit())
 
     def _limit(self) -> float:
         current = self.cheapest(self.observed())
@@ -313,16 +402,18 @@ class Search:
 
     def cheapest(self, errors: dict[Choice, float]) -> Pilot | None:
         """Return the cheapest pilot whose error is small enough."""
+        return min(self._good(errors), key=lambda pilot: pilot.seconds, default=None)
+
+    def _good(self, errors: dict[Choice, float]) -> list[Pilot]:
         rigid = [pilot.choice.stepping for pilot in self.pilots.done if pilot.choice.rung.family == RIGID]
         allowed = [*self.allowed, *rigid] if self.timings else [None]
-        fits = [
+        return [
             pilot
             for choice, error in errors.items()
             if error <= self.allowance
             and choice.stepping in allowed
             and (pilot := self.pilots.known(choice)) is not None
         ]
-        return min(fits, key=lambda pilot: pilot.seconds, default=None)
 
     def _trial(self, limit: float) -> Rung | None:
         """Return the rung that was not run yet and promises the largest saving for its cost."""
@@ -359,48 +450,21 @@ class Search:
             if m * a <= x and n * b <= y:
                 yield Rung(family, ((m * a, n * b),))
 
-    def _guess(self, family: Family) -> _Guess:
-        """Return a model of the errors of a family: a power of the elements along each side, fitted to its pilots."""
-        rates = {at: min(max(side.rate or 2.0, 1.0), 3.0) for at, side in self.sides.items()}
+    def _guess(self, family: Family) -> Guess:
+        """Return a model of the errors of a family, fitted to its pilots."""
+        known = next((climb.sides for climb in self.climbs if climb.family == family), self.sides)
+        rates = {at: min(max(side.rate or 2.0, 1.0), 3.0) for at, side in known.items()}
         scale = scales(self.exact)
-        sides = list(self.best.sides())
-        rows = []
-        for pilot in self.pilots.done:
-            rung = pilot.choice.rung
-            if pilot.ok and rung.family == family:
-                error = max(distance(pilot.values, self.exact, scale), 1e-12)
-                # Fine rungs tell more of fine ones.
-                rows.append(
-                    [_power(rung, at, rates) / error * rung.elements**0.5 for at in sides] + [rung.elements**0.5]
-                )
-        if not rows:
-            # Nothing is known of it: as good as the one that was refined.
-            return self._guess(self.best.family) if family != self.best.family else _Guess(rates, {})
-        matrix = np.array(rows)
-        weights = np.zeros(len(sides))
-        used = np.full(len(sides), True)
-        # Least squares with weights that are not negative: those that would be are left out.
-        while used.any():
-            weights[:] = 0.0
-            weights[used] = np.linalg.lstsq(matrix[:, :-1][:, used], matrix[:, -1], rcond=1e-9)[0]
-            if (weights >= 0.0).all():
-                break
-            used &= weights > 0.0
-        return _Guess(rates, dict(zip(sides, weights.tolist(), strict=True)))
-
-
-@dataclass(frozen=True)
-class _Guess:
-    rates: dict[tuple[int, int], float]
-    weights: dict[tuple[int, int], float]
-
-    def __call__(self, rung: Rung) -> float:
-        return sum(weight * _power(rung, at, self.rates) for at, weight in self.weights.items())
-
-
-def _power(rung: Rung, at: tuple[int, int], rates: dict[tuple[int, int], float]) -> float:
-    body, axis = at
-    return float(float(rung.divisions[body][axis]) ** -rates.get(at, 2.0))
+        # Distances below what `exact` lacks tell nothing.
+        errors = [
+            (pilot.choice.rung, max(distance(pilot.values, self.exact, scale), 0.5 * self.own))
+            for pilot in self.pilots.done
+            if pilot.ok and pilot.choice.rung.family == family
+        ]
+        if errors:
+            return fit(errors, list(self.best.sides()), rates)
+        # Nothing is known of it: as good as the one that was refined.
+        return self._guess(self.best.family) if family != self.best.family else Guess(rates, {})
 
 
 def _within(rung: Rung, other: Rung) -> bool:

@@ -12,6 +12,7 @@ from ancf.bodies import Cylinder, Plate, Rectangle
 from ancf.inputs import Input
 from ancf.loads import Force, LineLoad, Moment
 from ancf.model import Model
+from ancf.plan.ladder import CONTINUOUS
 from ancf.scene import Scene
 from ancf.supports import Support
 
@@ -25,6 +26,8 @@ def halved(scene: Scene) -> tuple[Scene, list[int]]:
     A plane across the middle of a rectangle, or of the length of a cylinder, is a mirror if loads and supports are
     their own images and all probes lie on its low side. Nodes on it stay in it, and their gradients across it normal to
     it.
+    The part is made of `thin48`, which has all nodal vectors of thin elements: `ancf.plan.ladder.apply` leaves out of
+    the support on the mirror what another element does not have.
     Whether the whole also *moves* symmetrically is another matter, see `ancf.plan.planner`.
 
     Parameters
@@ -63,13 +66,15 @@ def _halved(scene: Scene, axis: int) -> Scene | None:
         return None
     across, along = ("r_x", "r_y") if axis == 0 else ("r_y", "r_x")
     here, *others = np.roll(list("xyz"), -normal)
-    fix = [f"r.{here}", f"{along}.{here}", *(f"{across}.{other}" for other in others)]
+    odd = [f"{vector}.{other}" for vector in (across, "r_xy") for other in others]
+    fix = [f"r.{here}", f"{along}.{here}", *odd]
     edge = Support(body=name, at=f"edge:{'xy'[axis]}1", fix=fix)
     bodies = {name: _half_body(body, axis, middle)}
     return replace(scene, model=Model(bodies=bodies, supports=[*supports, edge], loads=loads, probes=model.probes))
 
 
 def _half_body(body: Plate, axis: int, middle: float) -> Plate:
+    body = body.model_copy(update=CONTINUOUS._asdict())
     if isinstance(body, Rectangle):
         size = tuple(middle if a == axis else side for a, side in enumerate(body.size))
         return body.model_copy(update={"size": size})

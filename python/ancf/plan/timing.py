@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ancf.plan.errors import Values, distance, scales
-from ancf.plan.ladder import Choice, Rung, Stepping
+from ancf.plan.ladder import LOOSEST, Choice, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.run import Dynamic, Method
 
@@ -19,9 +19,14 @@ SHARE = 0.25
 """Part of the tolerance that the error in time may take."""
 _REFERENCE = 0.1
 """Error of the reference in time, relative to that."""
-_LOOSEST, _TIGHTEST = 0.1, 1e-11
+_TIGHTEST = 1e-11
 _FEWEST_STEPS = 12
-_ROUNDS = 9
+_ROUNDS = 11
+_ORDER = 3
+_KEPT = 2
+"""Implicit and explicit steppings that are taken to finer meshes."""
+_LOOSE = 64.0
+"""First tolerance of error control relative to that of the plan: steps that must be stable are often precise."""
 _PATIENCE = 1.2
 """Times the cheapest adequate pilot after which another is given up."""
 
@@ -63,15 +68,15 @@ def reference(pilots: Pilots, rung: Rung, tol: float) -> Pilot:
         The most precise one that reached its end; not ok if none did.
     """
     size = _size(pilots)
-    first = pilots.run(Choice(rung, Stepping("esdirk", rtol=min(_LOOSEST, tol))), pilots.left / 6)
+    first = pilots.run(Choice(rung, Stepping("esdirk", rtol=min(LOOSEST, tol))), pilots.left / 6)
     if not first.ok:
-        first = pilots.run(Choice(rung, Stepping("verlet", rtol=min(_LOOSEST, tol))), pilots.left / 6)
+        first = pilots.run(Choice(rung, Stepping("verlet", rtol=min(LOOSEST, tol))), pilots.left / 6)
     if not first.ok:
         return first
     scale = scales(first.values)
     # Error control bounds what steps add to positions; velocities and strains need more care, so that the cheapest
     # reference is refined until it does not change.
-    rtol = min(_LOOSEST, SHARE * _REFERENCE * tol * _relative(pilots, scale, size))
+    rtol = min(LOOSEST, SHARE * _REFERENCE * tol * _relative(pilots, scale, size))
     best, method = first, first.choice.stepping
     assert method is not None
     while pilots.left > 0:
@@ -108,7 +113,10 @@ def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Tim
     scale = scales(exact)
     found: list[Timing] = []
     for ladder in (*_fixed(pilots), *_controlled(pilots, tol, scale)):
-        for stepping in ladder:
+        index = 0
+        while index < len(ladder):
+            stepping = ladder[index]
+            index += 1
             cheapest = min((timing.pilot.seconds for timing in found), default=np.inf)
             # An explicit method may be cheaper on a fine mesh, where factorisations cost more than forces.
             patience = 4.0 if stepping.explicit else _PATIENCE
@@ -118,8 +126,14 @@ def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Tim
                 if error <= SHARE * tol:
                     found.append(Timing(stepping, error, pilot))
                     break
+                # Those that are too long even if errors shrink fast, with the third power of the step or with the
+                # tolerance, are left out.
+                ratio = min(error, 1.0) / (SHARE * tol)
+                index += int(np.log2(ratio) / _ORDER if stepping.step is not None else np.log2(ratio) / 2)
             if pilots.left <= 0 or pilot.seconds > patience * cheapest + 0.02:
                 break
+    found.sort(key=lambda timing: timing.pilot.seconds)
+    found = [t for explicit in (False, True) for t in [t for t in found if t.stepping.explicit is explicit][:_KEPT]]
     found.sort(key=lambda timing: timing.pilot.seconds)
     if found and not found[0].stepping.explicit:
         kept = replace(found[0].stepping, reuse=True)
@@ -139,7 +153,7 @@ def _fixed(pilots: Pilots) -> Iterator[list[Stepping]]:
 
 
 def _controlled(pilots: Pilots, tol: float, scale: list[float]) -> Iterator[list[Stepping]]:
-    loose = min(_LOOSEST, tol * _relative(pilots, scale, _size(pilots)))
+    loose = min(LOOSEST, _LOOSE * tol * _relative(pilots, scale, _size(pilots)))
     for method in CONTROLLED:
         yield [Stepping(method, rtol=max(loose / 4**k, _TIGHTEST)) for k in range(_ROUNDS)]
 

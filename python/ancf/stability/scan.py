@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
-from ancf.errors import InputError, Mistake, show
-from ancf.run import Dynamic
+from ancf.errors import InputError, Mistake, Mistakes, one_of, show
+from ancf.places import is_number
+from ancf.run import Dynamic, Method
 from ancf.scene import Scene
 from ancf.stability.cells import Cell, classify, explicit_limit
 from ancf.sweep import Outcome, Variant, sweep
@@ -97,7 +99,7 @@ def scan(
     Raises
     ------
     InputError
-        If the scene does not move or has no probes, or the parameter has no values.
+        If the scene does not move or has no probes, the parameter has no values, or a value or method is impossible.
     """
     if not isinstance(scene.run, Dynamic):
         raise InputError(Mistake(("run", "kind"), "must be dynamic: the map is over time steps", show("static")))
@@ -106,6 +108,15 @@ def scan(
     until = scene.run.until
     base: dict[str, Any] = {"every": None, "outputs": [until * (k + 1) / _OUTPUTS for k in range(_OUTPUTS)]}
     chosen = list(values) if values else default_values(scene, parameter)
+    mistakes = Mistakes()
+    for name, numbers in ((parameter, chosen), ("steps", steps or ())):
+        for number in numbers:
+            if not is_number(number) or not 0 <= number < inf or (name != "viscosity" and number == 0):
+                mistakes.add((name,), "must be numbers greater than 0", number)
+    for method in methods or ():
+        if method not in get_args(Method):
+            mistakes.add(("methods",), one_of(get_args(Method), method), method)
+    mistakes.check()
     lengths = list(steps) if steps else [until / parts for parts in PARTS]
     grid = [(method, step, value) for value in chosen for method in methods or METHODS for step in lengths]
     runs = {key: Variant.of(scene, **base, method=key[0], step=key[1], **{parameter: key[2]}) for key in grid}

@@ -7,16 +7,19 @@ import json
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass, field
+from math import inf
 from typing import Any
 
 from ancf import _core
 from ancf.bodies import Rectangle
 from ancf.errors import InputError, Mistake, show
 from ancf.materials import Material
+from ancf.places import is_number
 from ancf.run import Dynamic, Modes, Static
 from ancf.scene import Scene
 
-_OF_BODIES = ("element", "membrane", "curvature", "thickness", "divisions")
+OF_BODIES = ("element", "membrane", "curvature", "thickness", "divisions")
+"""Settings of bodies."""
 _OF_MATERIALS = tuple(Material.model_fields)
 _DEFAULTS = {
     **{
@@ -79,16 +82,18 @@ class Variant:
         Raises
         ------
         InputError
-            If a body is a `Surface`, or the scene is run for its modes.
+            If a body is a `Surface`, the scene is run for its modes, or `mesh` is not a number greater than 0.
         """
         if isinstance(scene.run, Modes):
             raise InputError(Mistake(("run", "kind"), "must be static or dynamic to be compared", show("modes")))
         document = deepcopy(scene.document())
         for name, value in settings.items():
             if name == "mesh":
+                if not is_number(value) or not 0 < value < inf:
+                    raise InputError(Mistake(("mesh",), "must be a number greater than 0", show(value)))
                 for body in document["body"].values():
                     body["divisions"] = [max(1, round(value * number)) for number in body["divisions"]]
-            elif name in _OF_BODIES:
+            elif name in OF_BODIES:
                 _replace(document["body"].values(), name, value)
             elif name in _OF_MATERIALS:
                 _replace(document["material"].values(), name, value)
@@ -112,6 +117,13 @@ class Variant:
     @property
     def effort(self) -> float:
         """A rough measure of the time that the run takes, for the time to go: elements times implicit steps."""
+        try:
+            return self._effort()
+        except (ArithmeticError, TypeError):
+            # It is refused when it is run, at once.
+            return 0.0
+
+    def _effort(self) -> float:
         run = self.scene["run"]
         elements = sum(body["divisions"][0] * body["divisions"][1] for body in self.scene["body"].values())
         weight = _EXPLICIT.get(run.get("method", ""), 1.0) * elements

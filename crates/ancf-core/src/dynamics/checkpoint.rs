@@ -4,7 +4,7 @@ use crate::assembly::{StrainEnergy, System};
 use crate::error::InputError;
 use crate::nonlinear::{Failure, Kept};
 use crate::observe::State;
-use crate::report::Counts;
+use crate::report::{Counts, Rejections};
 
 use super::Options;
 use super::control::Controller;
@@ -49,7 +49,7 @@ impl Tangent {
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp2";
+const MAGIC: &[u8; 8] = b"ancf-cp3";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -97,10 +97,13 @@ impl Checkpoint {
         words.count(now.negative_pivots.map_or(0, |n| n + 1));
         words.number(controller.step);
         words.number(controller.last_error);
+        words.number(controller.limit);
         words.count(usize::from(controller.rejected));
-        for count in
-            [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.forces, counts.factorizations]
-        {
+        let Rejections { inaccurate, unsolved, singular, not_finite } = counts.rejected;
+        for count in [counts.steps, inaccurate, unsolved, singular, not_finite] {
+            words.count(count);
+        }
+        for count in [counts.iterations, counts.forces, counts.factorizations] {
             words.count(count);
         }
         words.count(usize::from(tangent.is_some()));
@@ -140,12 +143,16 @@ impl Checkpoint {
         let (q, v, a, external) = (words.numbers()?, words.numbers()?, words.numbers()?, words.numbers()?);
         let negative_pivots = words.count()?.checked_sub(1);
         let now = Instantaneous { t, q, v, a, lag, external, damping, work, dissipated, negative_pivots };
-        let [step, last_error] = words.array()?;
-        let controller = Controller { step, last_error, rejected: words.count()? != 0 };
+        let [step, last_error, limit] = words.array()?;
+        let controller = Controller { step, last_error, limit, rejected: words.count()? != 0 };
         let counts = Counts {
             steps: words.count()?,
-            rejected: words.count()?,
-            unsolved: words.count()?,
+            rejected: Rejections {
+                inaccurate: words.count()?,
+                unsolved: words.count()?,
+                singular: words.count()?,
+                not_finite: words.count()?,
+            },
             iterations: words.count()?,
             forces: words.count()?,
             factorizations: words.count()?,

@@ -89,6 +89,9 @@ pub(super) struct Controller {
     pub last_error: f64,
     /// Whether the last step was rejected.
     pub rejected: bool,
+    /// Longest step that is stable, s; infinite for implicit methods. It lies beside the others since a run that is
+    /// resumed has to go on with it.
+    pub limit: f64,
 }
 
 /// Share of the length at which the error would just be allowed.
@@ -102,7 +105,7 @@ const CUT: f64 = 0.25;
 
 impl Controller {
     pub fn new(step: f64) -> Self {
-        Self { step, last_error: 1.0, rejected: false }
+        Self { step, last_error: 1.0, rejected: false, limit: f64::INFINITY }
     }
 
     /// After a step of length `h` with an error of at most 1, relative to its share; it shrinks with `h` to the `power`.

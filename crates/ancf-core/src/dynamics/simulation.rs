@@ -14,7 +14,9 @@ use super::stability::highest_frequency;
 use super::state::Instantaneous;
 
 /// Explicit steps after which the limit of stability is estimated again.
-const LIMIT_EVERY: usize = 100;
+const LIMIT_EVERY: usize = 20;
+/// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates.
+const STABLE: f64 = 0.9;
 
 /// A motion while it is computed.
 pub(super) struct Simulation<'a> {
@@ -77,7 +79,9 @@ impl<'a> Simulation<'a> {
     pub fn begin(&mut self, checkpoint: Option<Checkpoint>, observer: &mut dyn Observer) -> Result<(), Failure> {
         if let Some(checkpoint) = checkpoint {
             self.resume(checkpoint)?;
-            return self.check_limit();
+            // What an uninterrupted run would not have done is not counted.
+            self.earlier = [self.equations.system.forces(), self.equations.system.factorizations()];
+            return Ok(());
         }
         let q = self.equations.system.model().reference().to_vec();
         let zeros = vec![0.0; q.len()];
@@ -85,11 +89,11 @@ impl<'a> Simulation<'a> {
         self.now = Instantaneous { q, v, a: zeros.clone(), external: zeros, ..Instantaneous::default() };
         self.integrator.begin(&mut self.equations, &mut self.now)?;
         self.next = self.now.clone();
-        self.check_limit()?;
         self.controller = Controller::new(match self.options.steps {
             Steps::Fixed { step, .. } => step,
             Steps::Controlled(tolerances) => tolerances.first_step.unwrap_or_else(|| self.first_step(tolerances)),
         });
+        self.heed_limit()?;
         if self.options.outputs.first() == Some(&0.0) {
             observer.state(self.now.output(&mut self.equations));
         }
@@ -114,17 +118,19 @@ impl<'a> Simulation<'a> {
             if observer.stop() {
                 return Err(Failure::Stopped);
             }
+            if self.counts.steps.is_multiple_of(LIMIT_EVERY) && self.counts.steps > 0 {
+                self.heed_limit()?;
+            }
             match self.options.steps {
                 Steps::Fixed { step, .. } => {
-                    if self.counts.steps.is_multiple_of(LIMIT_EVERY) && self.counts.steps > 0 {
-                        self.check_limit()?;
-                    }
                     // Steps are counted, so that their ends do not drift with rounding; the last may be shorter.
                     let steps = (self.options.until / step - 1e-9).ceil().max(1.0) as usize;
                     let count = self.counts.steps + 1;
                     self.next.t = if count >= steps { self.options.until } else { count as f64 * step };
                     self.try_step(observer).inspect_err(|failure| {
-                        self.counts.rejected += usize::from(*failure != Failure::Stopped);
+                        if *failure != Failure::Stopped {
+                            self.counts.rejected.count(failure);
+                        }
                     })?;
                 }
                 Steps::Controlled(tolerances) => {
@@ -163,10 +169,12 @@ impl<'a> Simulation<'a> {
     /// A step may add as much of the allowed error as its share of the duration, so that together they add no more.
     fn controlled_step(&mut self, tolerances: Tolerances, target: f64, observer: &dyn Observer) -> Result<(), Failure> {
         let power = self.integrator.error_order() as f64;
-        let mut cause = None;
+        let limit = self.controller.limit;
+        let unstable = Failure::StepAboveLimit { t: self.now.t, step: tolerances.min_step, limit };
+        let mut cause = (tolerances.min_step > limit).then(|| Box::new(unstable));
         loop {
             let left = target - self.now.t;
-            let step = self.controller.step.min(tolerances.max_step);
+            let step = self.controller.step.min(tolerances.max_step).min(limit);
             // Two equal steps rather than one and a tiny rest.
             let h = if step > 0.999 * left { left } else { step.min(0.5 * left).max(step.min(left - step)) };
             self.next.t = if h == left { target } else { self.now.t + h };
@@ -182,19 +190,20 @@ impl<'a> Simulation<'a> {
                     }
                     if error.is_finite() {
                         self.controller.reject(h, error, power);
+                        self.counts.rejected.inaccurate += 1;
                     } else {
                         self.controller.cut(h);
+                        self.counts.rejected.not_finite += 1;
                     }
                     cause = None;
                 }
                 Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
                 Err(failure) => {
                     self.controller.cut(h);
-                    self.counts.unsolved += 1;
+                    self.counts.rejected.count(&failure);
                     cause = Some(Box::new(failure));
                 }
             }
-            self.counts.rejected += 1;
         }
     }
 
@@ -214,9 +223,6 @@ impl<'a> Simulation<'a> {
             let distance = share * allowed;
             step = step.min(distance / v.abs()).min((2.0 * distance / a.abs()).sqrt());
         }
-        if let Some(limit) = self.limit() {
-            step = step.min(limit);
-        }
         step
     }
 
@@ -234,13 +240,21 @@ impl<'a> Simulation<'a> {
         Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
     }
 
-    /// Refuses a fixed explicit step that is not stable in the present state.
-    fn check_limit(&mut self) -> Result<(), Failure> {
-        let Steps::Fixed { step, force: false } = self.options.steps else { return Ok(()) };
-        match self.limit() {
-            Some(limit) if step > limit => Err(Failure::StepAboveLimit { t: self.now.t, step, limit }),
-            _ => Ok(()),
+    /// Refuses a fixed explicit step that is not stable in the present state, and holds controlled ones below the limit.
+    ///
+    /// Error control alone would not: it sees positions only, and where the tolerance is loose, what grows in the other
+    /// coordinates has made the model another one before positions show it.
+    fn heed_limit(&mut self) -> Result<(), Failure> {
+        match self.options.steps {
+            Steps::Fixed { force: true, .. } => {}
+            Steps::Fixed { step, .. } => {
+                if let Some(limit) = self.limit().filter(|limit| step > *limit) {
+                    return Err(Failure::StepAboveLimit { t: self.now.t, step, limit });
+                }
+            }
+            Steps::Controlled(_) => self.controller.limit = self.limit().map_or(f64::INFINITY, |limit| STABLE * limit),
         }
+        Ok(())
     }
 
     /// What is needed to go on from the last accepted step.
@@ -261,7 +275,6 @@ impl<'a> Simulation<'a> {
         (self.now, self.controller, self.counts) = (now, controller, counts);
         if let Some(tangent) = &tangent {
             tangent.restore(&mut self.equations)?;
-            self.earlier[1] = self.equations.system.factorizations();
         }
         self.tangent = tangent;
         Ok(())

@@ -99,7 +99,7 @@ pub enum Failure {
         /// End of the step, s.
         t: f64,
     },
-    /// A fixed explicit step is not stable.
+    /// An explicit step, or the shortest that error control may take, is not stable.
     #[error("the step {step:.4e} s is above the limit {limit:.4e} s of the explicit method at t = {t:.4e} s")]
     StepAboveLimit {
         /// Time, s.
@@ -160,6 +160,9 @@ impl Failure {
             }
             Self::StepTooSmall { cause: None, .. } => {
                 "a larger rtol; if the motion is violent there, check loads, thickness and units"
+            }
+            Self::StepTooSmall { cause: Some(cause), .. } if matches!(**cause, Self::StepAboveLimit { .. }) => {
+                "a smaller min_step, or an implicit method"
             }
             Self::StepTooSmall { .. } => {
                 "an element may have collapsed or a load may be too large to be carried: check loads, thickness and \

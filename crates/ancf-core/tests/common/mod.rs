@@ -15,7 +15,13 @@ use ancf_core::report::{Outcome, Run};
 
 /// A square plate, flat and at rest.
 pub fn plate(divisions: usize, side: f64, thickness: f64, material: Material) -> (Model, BodyId) {
-    let plate = Plate { material, thickness, element: Kind::Thin36, membrane: Some(Membrane::Full), curvature: None };
+    plate_of(Kind::Thin36, divisions, side, thickness, material)
+}
+
+/// The same of another element.
+pub fn plate_of(element: Kind, divisions: usize, side: f64, thickness: f64, material: Material) -> (Model, BodyId) {
+    let membrane = (element == Kind::Thin36).then_some(Membrane::Full);
+    let plate = Plate { material, thickness, element, membrane, curvature: None };
     let mut model = Model::new();
     let surface = Surface::rectangle([side, side]).unwrap();
     let body = model.add_body("plate", &surface, [divisions, divisions], plate).unwrap();
@@ -24,7 +30,11 @@ pub fn plate(divisions: usize, side: f64, thickness: f64, material: Material) ->
 
 /// The pendulum of Dufva and Shabana (2005): a square plate, pinned at a corner, falls from rest.
 pub fn pendulum_of(divisions: usize, thickness: f64, material: Material) -> Model {
-    let (mut model, body) = plate(divisions, 0.3, thickness, material);
+    hang(plate(divisions, 0.3, thickness, material))
+}
+
+/// Pins a plate at a corner and lets it fall.
+pub fn hang((mut model, body): (Model, BodyId)) -> Model {
     let fix = Fix { vector: ancf_core::element::NodalVector::R, component: None };
     model.fix(body, "corner:x0y0".parse().unwrap(), fix).unwrap();
     gravity(&mut model, -9.81);

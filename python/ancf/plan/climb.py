@@ -1,0 +1,46 @@
+"""The climb of one family: its finest rung, what is known along its sides, and the error that is left."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ancf.plan.errors import Side, Values
+from ancf.plan.ladder import Family, Rung
+
+
+@dataclass
+class Climb:
+    """How far a family has been refined.
+
+    Parameters
+    ----------
+    next : Rung
+        What is run next.
+    rung : Rung or None
+        The finest that reached its end; None before the first.
+    exact : list of ndarray
+        The wanted quantities of `rung`, extrapolated where rates are known.
+    own : float
+        Error left in `exact`, relative.
+    sides : dict of (int, int) to Side
+        Differences and rates along body and axis.
+    stalled : int
+        Rungs in a row that were no better than the one before.
+    ended : bool
+        Whether it is given up.
+    """
+
+    next: Rung
+    rung: Rung | None = None
+    exact: Values = field(default_factory=list)
+    own: float = np.inf
+    sides: dict[tuple[int, int], Side] = field(default_factory=dict)
+    stalled: int = 0
+    ended: bool = False
+
+    @property
+    def family(self) -> Family:
+        """The element and membrane."""
+        return self.next.family
