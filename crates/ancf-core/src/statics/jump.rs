@@ -15,8 +15,8 @@ use super::path::{Path, Point, difference};
 const MOST_STEPS: usize = 50;
 /// Load, relative to the step that failed, after which it has got on.
 const PASSED: f64 = 16.0;
-/// Steps of a motion.
-const MOST_MOTION: usize = 200;
+/// Iterations of a motion.
+const MOST_MOTION: usize = 1500;
 /// Disturbance along the mode that has lost its stiffness, relative to the size of the model.
 const DISTURBANCE: f64 = 1e-3;
 
@@ -58,7 +58,7 @@ fn jump(path: &mut Path<'_>, stable: &[f64], t: f64, observer: &mut dyn Observer
     let q = disturbed(path, &metric, &away);
     let beyond = |_: &Path<'_>, point: &Point| metric.length(&difference(&point.q, stable)) > metric.length(&away);
     let displacement = difference(&path.at.q, path.system.model().reference());
-    let start = Start { t, q, shape: &displacement, stiffness: 2.0 * path.at.energy };
+    let start = Start { t, q, shape: &displacement, stiffness: 2.0 * path.at.energy, stable: false };
     let found = settle(path, start, MOST_MOTION, beyond, observer)?;
     let end = found.ok_or(Failure::Unstable { negative })?;
     let straight = difference(&end.q, &path.at.q);

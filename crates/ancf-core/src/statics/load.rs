@@ -6,7 +6,8 @@
 //! where its tangent points says too little about the way to be trusted.
 //!
 //! Where Newton's method does not converge the structure slides to the equilibrium at the end of the step, and this is
-//! accepted on the same terms. So a step is as long as the way can be told from its ends, not as Newton's method converges.
+//! accepted on the same terms, if the stiffness has been positive all the way. So a step is as long as the way can be told
+//! from its ends, not as Newton's method converges. Where shorter steps cost less there is no slide, or it is cut short.
 
 use crate::nonlinear::{Failure, Problem};
 use crate::observe::Observer;
@@ -44,8 +45,10 @@ const CUT: f64 = 0.25;
 const GROWN: f64 = 4.0;
 /// The number of iterations that a slide counts as.
 const AFTER_SLIDE: usize = 6;
-/// Steps of the motion in a slide: one that goes on for longer goes too far.
+/// Iterations of the motion in a slide: beyond, shorter steps cost less.
 const MOST_SLIDE: usize = 60;
+/// Largest share of the way to the next load factor over which to slide: a few shorter steps cost less.
+const LONGEST_SLIDE: f64 = 0.3;
 /// Steps that fail one after the other before arc length is tried.
 const PATIENCE: usize = 3;
 
@@ -81,6 +84,7 @@ fn reach(
     // Changes of the coordinates, per length of step, that the tangent at the last point predicts.
     let mut rate = None;
     let mut failed = 0;
+    let whole = (target.t - path.at.load.t).abs();
     // Where the last step that failed would have ended.
     let mut lost = f64::NAN;
     while path.at.load != target {
@@ -97,7 +101,7 @@ fn reach(
         });
         let predicted: Vec<f64> = rate_here.iter().map(|v| v * length).collect();
         let result = match advance(path, to, &change, &predicted, observer) {
-            Err(failure) if from.held == 0.0 && failure.is_divergence() => {
+            Err(failure) if from.held == 0.0 && failure.is_divergence() && length <= LONGEST_SLIDE * whole => {
                 slide(path, to, &change, &predicted, observer).map(|()| AFTER_SLIDE)
             }
             result => result,
@@ -170,14 +174,10 @@ fn slide(
     observer: &dyn Observer,
 ) -> Result<(), Failure> {
     let stiffness = product(change, predicted);
-    let start = Start { t: to.t, q: path.at.q.clone(), shape: predicted, stiffness };
+    let start = Start { t: to.t, q: path.at.q.clone(), shape: predicted, stiffness, stable: true };
     let found = settle(path, start, MOST_SLIDE, |_, _| true, observer)?;
     let point = found.ok_or(Failure::NotConverged { iterations: 0, correction: f64::NAN })?;
-    let accepted = accept(path, point, change, predicted, [SLID, 0.0]);
-    if accepted.is_err() {
-        path.linearize()?;
-    }
-    accepted
+    accept(path, point, change, predicted, [SLID, 0.0])
 }
 
 /// Accepts a solution as the next one on the path, or leaves the path as it was.

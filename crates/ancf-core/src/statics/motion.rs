@@ -6,6 +6,7 @@
 use std::sync::Arc;
 
 use crate::assembly::System;
+use crate::element::Want;
 use crate::nonlinear::{Failure, Newton, Options as NewtonOptions, Problem};
 use crate::observe::Observer;
 
@@ -14,9 +15,10 @@ use super::path::{Load, Path, Point, difference, product};
 
 /// Density, kg/m3, that lets a body without mass move and weighs nothing.
 const WEIGHTLESS: f64 = 1e-12;
-/// Factor of the inertia in a motion: by how much it changes after a step that succeeds and one that fails, relative to
-/// that of free vibration the least at which it may be left out and the largest that is tried.
-const LONGER: f64 = 0.25;
+/// Factor of the inertia in a motion: by how much it changes after a step that succeeds, the same once one has failed, and
+/// after one that fails; relative to that of free vibration the least at which it may be left out and the largest that is
+/// tried.
+const LONGER: [f64; 2] = [0.25, 0.5];
 const SHORTER: f64 = 6.0;
 const LIGHTEST: f64 = 1e-3;
 const HEAVIEST: f64 = 1e12;
@@ -24,10 +26,12 @@ const HEAVIEST: f64 = 1e12;
 const QUICK: usize = 4;
 /// Largest change of a coordinate in such a step, relative to the size of the model.
 const LONGEST: f64 = 0.3;
-/// A motion that moves less in a step, relative to the size of the model, has almost come to rest.
+/// A motion that moves less in a step, relative to the size of the model, and less than this share of the step before,
+/// has almost come to rest.
 const AT_REST: f64 = 0.05;
+const CALMER: f64 = 0.5;
 /// Accuracy of a step.
-const TOLERANCE: f64 = 1e-5;
+const TOLERANCE: f64 = 1e-3;
 /// Iterations after which a step has failed.
 const ITERATIONS: usize = 8;
 
@@ -41,12 +45,18 @@ pub(super) struct Start<'a> {
     pub shape: &'a [f64],
     /// Its product with the stiffness and itself, J.
     pub stiffness: f64,
+    /// Whether the stiffness must stay positive on the way.
+    pub stable: bool,
 }
 
-/// Moves until a stable equilibrium that is `wanted` is found, in at most so many steps; none: there is no such one.
+/// Moves until a stable equilibrium that is `wanted` is found, in about so many iterations; none: there is no such one.
+///
+/// # Errors
+///
+/// The motion comes where it may not: the stiffness is not positive.
 pub(super) fn settle(
     path: &mut Path<'_>,
-    Start { t, mut q, shape, stiffness }: Start<'_>,
+    Start { t, mut q, shape, stiffness, stable }: Start<'_>,
     most: usize,
     wanted: impl Fn(&Path<'_>, &Point) -> bool,
     observer: &dyn Observer,
@@ -62,9 +72,12 @@ pub(super) fn settle(
     damped.add_mass_times(shape, &mut force);
     // Rayleigh's quotient.
     let scale = stiffness / product(shape, &force);
-    let mut mass = scale;
-    let mut found = None;
-    for _ in 0..most {
+    // Along `shape` the first step is not too long.
+    let mut mass = scale * (newton.distance(&vec![0.0; q.len()], shape) / LONGEST).max(1.0);
+    let mut longer = LONGER[0];
+    let mut last = f64::INFINITY;
+    let mut end = Ok(None);
+    while newton.iterations() < most {
         let mut next = q.clone();
         let problem = Problem { t, mass, stiffness: 1.0, origin: &q, ..Problem::default() };
         let report = match newton.solve(&mut damped, &problem, &mut next, None, observer) {
@@ -78,18 +91,28 @@ pub(super) fn settle(
         });
         let Some(report) = valid else {
             mass *= SHORTER;
+            longer = LONGER[1];
             if mass > HEAVIEST * scale {
                 break;
             }
             continue;
         };
         (q, energy) = (next, report.energy);
-        if report.iterations <= QUICK {
-            mass *= LONGER;
+        let negative = if stable { negative_pivots(path, t, &q)? } else { 0 };
+        if negative > 0 {
+            end = Err(Failure::Unstable { negative });
+            break;
         }
-        if moved < AT_REST && mass < LIGHTEST * scale {
-            found = rest(path, t, &q, observer)?.filter(|point| wanted(path, point));
+        let quick = report.iterations <= QUICK;
+        if quick {
+            mass *= longer;
+        }
+        let calm = mass < LIGHTEST * scale || quick && moved < CALMER * last;
+        last = moved;
+        if moved < AT_REST && calm {
+            let found = rest(path, t, &q, observer)?.filter(|point| wanted(path, point));
             if found.is_some() {
+                end = Ok(found);
                 break;
             }
         }
@@ -97,7 +120,15 @@ pub(super) fn settle(
     path.forces += damped.forces();
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
-    Ok(found)
+    end
+}
+
+/// Negative pivots of the stiffness.
+fn negative_pivots(path: &mut Path<'_>, t: f64, q: &[f64]) -> Result<usize, Failure> {
+    let want = Want { mass: 0.0, stiffness: 1.0, previous: None };
+    path.system.assemble(q, t, want, &mut vec![0.0; q.len()]);
+    let inertia = path.system.factorize();
+    inertia.map(|inertia| inertia.negative).map_err(|e| Failure::from_linear(e, 0, |row| path.system.describe(row)))
 }
 
 /// The stable equilibrium close to `q`, if there is one.
