@@ -23,8 +23,6 @@ fn independent_methods_agree() {
         let tips = Method::ALL.map(|method| {
             let step = match method {
                 Method::Esdirk => 4.0 * step,
-                // Below the limit of its stability on 8 x 8 elements, 4.8e-4 s.
-                Method::Rk => 1.5 * step,
                 _ => step,
             };
             let mut options = options(method, Steps::fixed(step), 0.3);
