@@ -12,7 +12,7 @@ from collections.abc import Callable
 import ancf
 from ancf.run import Method
 
-COUNTS = ("steps", "rejected", "unsolved", "iterations", "factorizations")
+COUNTS = ("steps", "inaccurate", "unsolved", "iterations", "factorizations")
 
 
 def pendulum(thickness: float, young: float) -> ancf.Model:

@@ -1,8 +1,8 @@
 """Chart what accuracy costs in the pendulum, with Exudyn's thin plate beside our elements.
 
 Run it from any folder with ``python benchmarks/pendulum_chart.py -o DIR``; it takes some minutes. It is
-``ancf chart examples/pendulum.toml -o DIR`` and then Exudyn's runs of `peers.py`, all on this machine, each alone on one
-thread, timed as often in random order. What biases it is written in the report.
+``ancf chart examples/pendulum.toml -o DIR`` and then Exudyn's runs of `peers.py`, all on this machine, each alone on
+one thread, timed as often in random order. What biases it is written in the report.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ MESHES = (2, 4, 8)
 STEPS = (4e-3, 2e-3, 1e-3, 5e-4)
 RULES = {False: "Exudyn thin plate", True: "Exudyn thin plate, reduced"}
 REMARKS = (
-    f"Exudyn is {EXUDYN.partition('==')[2]}, `ObjectANCFThinPlate`, its fast build, with its default and its reduced rule of "
-    "integration, generalised-alpha with fixed steps and a spectral radius of 0.9, modified Newton; it ran after our runs, "
-    "as often, in random order.",
+    f"Exudyn is {EXUDYN.partition('==')[2]}, `ObjectANCFThinPlate`, its fast build, with its default and its reduced "
+    "rule of integration, generalised-alpha with fixed steps and a spectral radius of 0.9, modified Newton; it ran "
+    "after our runs, as often, in random order.",
     "What favours Exudyn: its times are those of its solver, ours include the making of the system. What favours ours: "
     "Exudyn keeps the pin as a constraint, which makes its matrices unsymmetric, and of its methods and settings only "
-    "these were tried; the reference is made of our elements, though of two that share no code with its element.",
+    "these were tried; the reference is made of our elements.",
 )
 
 
@@ -72,6 +72,7 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=3, metavar="N", help="how often each run is timed (default: 3)")
     options = parser.parse_args()
     scene = ancf.load_scene(SCENE)
+    assert isinstance(scene.run, ancf.Dynamic)
     assert scene.run.until == UNTIL
     options.output.mkdir(parents=True, exist_ok=True)
     log = options.output / "runs.jsonl"

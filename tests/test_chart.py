@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 import ancf
-from ancf.chart import default_axes, measure, read_axes, write_chart
+from ancf.chart import Rival, default_axes, measure, read_axes, write_chart
 from ancf.chart.axes import grid, with_few_outputs
 from ancf.chart.labels import Label
 from ancf.chart.points import Point, front, winners
@@ -19,6 +19,7 @@ from ancf.cli import main
 from ancf.pages import Block, Fold, Heading, Points, Script, Table, Text
 from ancf.pages.markdown import to_markdown
 from ancf.pages.page import to_html
+from ancf.result import Record
 from ancf.sweep import Timing
 
 AXES = ["element=thin36,full48a", "membrane=full", "mesh=0.5,1", "method=hht,verlet", "rtol=0.01,0.00001"]
@@ -175,6 +176,25 @@ def test_a_statics_scene_and_runs_that_are_refused(scenes: Path, tmp_path: Path)
     paths = write_chart(tmp_path, chart)
     assert all(path.stat().st_size > 500 for path in paths)
     assert "allowed are thin36" in (tmp_path / "chart.md").read_text(encoding="utf-8")
+
+
+def test_another_program_stands_beside(scenes: Path, tmp_path: Path) -> None:
+    """A run that is a tenth of the motion off the reference, at no time at all."""
+    scene = ancf.load_scene(scenes / "cantilever.toml")
+    axes: dict[str, Any] = {"element": ["thin36"], "mesh": [0.5, 1.0]}
+    chart = measure(scene, axes, tmp_path / "log.jsonl", budget=60, repeats=1)
+    exact = chart.reference.probes["tip"]
+    off = Record(exact.t, exact.value + np.array([0.0, 0.1 * chart.reference.scale["tip"], 0.0]))
+    label = Label("Other", "9 x 9", "its method", "step 1 s")
+    beside = chart.beside([Rival(label, 81, Timing((1e-9,), (1e-9,)), {"tip": off})], "It is made up.")
+    assert beside.points[:-1] == chart.points
+    assert beside.points[-1].error == pytest.approx(0.1)
+    assert front(beside.points)[0].label == label
+    write_chart(tmp_path, beside)
+    last = rows(tmp_path)[len(chart.points)]
+    assert (last["element"], last["error_space"], last["dofs"]) == ("Other", "", "")
+    assert "It is made up." in (tmp_path / "chart.md").read_text(encoding="utf-8")
+    assert json.loads(page_data(tmp_path))["points"][-1]["toml"] is None
 
 
 def test_a_claimed_error_holds_against_a_closed_form(tmp_path: Path) -> None:

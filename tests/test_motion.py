@@ -39,6 +39,19 @@ def test_every_method_keeps_the_tolerance(method: Method) -> None:
     np.testing.assert_allclose(result.probes["A"].value[-1], TIP, atol=3e-4 * 0.3 * 2**0.5)
 
 
+def test_rejections_are_counted_by_cause() -> None:
+    """A first step over all of the motion has too large an error; a load that nothing can carry has no solution."""
+    causes = ("inaccurate", "unsolved", "singular", "not_finite")
+    counts = ancf.simulate(pendulum(), until=0.3, rtol=1e-4, first_step=0.3, outputs=[0.3]).counts
+    assert counts["inaccurate"] > 0
+    assert counts["rejected"] == sum(counts[cause] for cause in causes)
+    burst = ancf.Pressure(pressure=1e9, history=[(0.1, 0.0), (0.11, 1.0)])
+    held = [ancf.Support(at="edge:x0", clamp=True)]
+    model = ancf.Model(bodies=pendulum().bodies, supports=held, loads=[burst])
+    counts = ancf.simulate(model, until=0.3, step=0.01, throw=False).counts
+    assert counts["rejected"] == counts["unsolved"] + counts["not_finite"] == 1
+
+
 def test_explicit_steps_above_the_limit_are_refused() -> None:
     with pytest.raises(ancf.SolveError, match="above the limit") as failed:
         ancf.simulate(pendulum(), until=0.3, step=0.05, method="verlet")

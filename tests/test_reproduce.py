@@ -6,6 +6,10 @@ from pathlib import Path
 import pytest
 
 from ancf.cli import main
+from ancf.reproduce.dufva_shabana.paper import pendulum
+from ancf.reproduce.dufva_shabana.velocities import integrate
+from ancf.scene import Scene
+from ancf.sweep import Variant
 
 NAME = "dufva-shabana-2005"
 
@@ -46,6 +50,22 @@ def test_only_the_explicit_steps_of_the_solid_grow(folder: Path) -> None:
     thin, solid = ([int(row[f"rk, {name}"]) for row in rows] for name in ("Model I", "Model II"))
     assert thin[-1] / thin[0] == pytest.approx(1, abs=0.2)
     assert solid[-1] / solid[0] == pytest.approx(20, rel=0.2)
+
+
+def test_control_of_velocities_costs_only_the_solid_more(folder: Path) -> None:
+    """At the default tolerance of ode23tb the steps of Model II grow, but far from as 1 / thickness."""
+    rows = table(folder, "velocities")
+    thin, solid = ([int(row[f"{name}: steps"]) for row in rows] for name in ("Model I", "Model II"))
+    assert thin[-1] / thin[0] == pytest.approx(1, abs=0.2)
+    assert 1.3 < solid[-1] / solid[0] < 5
+
+
+def test_the_experiment_moves_the_plate_as_known() -> None:
+    """The 2 x 2 pendulum as in `ancf.reference`."""
+    variant = Variant.of(pendulum(), divisions=[2, 2])
+    found = integrate(Scene.of(variant.scene).model.assemble("constant"), 0.3, 1e-5)
+    corner = found.q.reshape(9, 3, 3)[-1, 0]
+    assert corner == pytest.approx([0.22634, 0.22634, -0.44155], abs=2e-5)
 
 
 def test_the_figures_of_the_paper_stand_beside(folder: Path) -> None:

@@ -144,9 +144,7 @@ class Run:
     @property
     def angular_momentum(self) -> _FloatArray: ...  # (states, 3) kg m2/s about the origin
     @property
-    def counts(
-        self,
-    ) -> dict[str, int]: ...  # elements, dofs, steps, rejected, unsolved, iterations, forces, factorizations
+    def counts(self) -> dict[str, int]: ...  # of `Result.counts`
     @property
     def seconds(self) -> dict[str, float]: ...  # total, setup, assembly, factorization, solve
     @property

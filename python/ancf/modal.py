@@ -50,8 +50,7 @@ class ModalResult:
     shapes : ndarray, shape (modes, n)
         Changes of the nodal coordinates, orthonormal with respect to the mass matrix.
     counts : dict of str to int
-        elements, dofs, steps, rejected, unsolved, iterations (products with the inverse), factorizations; those of
-        statics included.
+        As of `Result`, those of statics included; iterations are products with the inverse.
     seconds : dict of str to float
         total, setup, assembly, factorization, solve.
     """
@@ -286,8 +285,8 @@ def find_modes(
             call(outcome.reached)
     counts, seconds = outcome.counts, outcome.seconds
     if before is not None:
-        for name in ("steps", "rejected", "unsolved", "iterations", "factorizations"):
-            counts[name] += before.counts[name]
+        counts = {name: number + before.counts[name] for name, number in counts.items()}
+        counts |= {name: before.counts[name] for name in ("elements", "dofs")}
         seconds = {name: number + before.seconds[name] for name, number in seconds.items()}
     result = ModalResult(
         model=model,

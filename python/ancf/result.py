@@ -95,8 +95,8 @@ class Result:
     negative_pivots : ndarray of int, shape (states,)
         Negative eigenvalues of the tangent, 0 where the equilibrium is stable; -1 where they were not counted.
     counts : dict of str to int
-        elements, dofs, steps, rejected (of these unsolved: Newton failed), iterations, forces (evaluations),
-        factorizations.
+        elements, dofs, steps, rejected and its causes (inaccurate, unsolved, singular, not_finite), iterations,
+        forces (evaluations), factorizations.
     seconds : dict of str to float
         total, setup, assembly, factorization, solve.
     """

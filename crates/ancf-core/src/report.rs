@@ -36,15 +36,43 @@ pub struct Counts {
     /// Accepted steps.
     pub steps: usize,
     /// Steps that were tried and not accepted.
-    pub rejected: usize,
-    /// Those of them whose equations could not be solved; the others had too large an error.
-    pub unsolved: usize,
+    pub rejected: Rejections,
     /// Newton iterations.
     pub iterations: usize,
     /// Evaluations of the elastic forces of all elements, with or without their tangent.
     pub forces: usize,
     /// Numeric factorisations.
     pub factorizations: usize,
+}
+
+/// Steps that were tried and not accepted, by cause.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Rejections {
+    /// The error was too large; in statics: the solution was not the next one on the path.
+    pub inaccurate: usize,
+    /// Newton's method did not converge.
+    pub unsolved: usize,
+    /// The tangent was singular.
+    pub singular: usize,
+    /// A force or a state became infinite or not a number, as where an element collapses.
+    pub not_finite: usize,
+}
+
+impl Rejections {
+    /// All of them.
+    pub fn total(&self) -> usize {
+        self.inaccurate + self.unsolved + self.singular + self.not_finite
+    }
+
+    /// Counts a step that failed.
+    pub(crate) fn count(&mut self, failure: &Failure) {
+        *match failure {
+            Failure::Disconnected { .. } => &mut self.inaccurate,
+            Failure::Singular { .. } => &mut self.singular,
+            Failure::NotFinite { .. } | Failure::Overflow { .. } => &mut self.not_finite,
+            _ => &mut self.unsolved,
+        } += 1;
+    }
 }
 
 impl Counts {

@@ -70,15 +70,15 @@ fn tolerances_are_kept() {
 /// see, never comes to move positions. The thick solid has its highest frequencies there.
 #[test]
 fn loose_tolerances_do_not_hide_unstable_explicit_steps() {
-    let model = hang(plate_of(Kind::Full48a, 2, 0.3, 0.01, rubber()));
-    let reference = end(model.clone(), &options(Method::Esdirk, Steps::controlled(1e-5), 0.3));
-    for method in [Method::Verlet { lumped: false }, Method::Rk] {
-        for rtol in [0.3, 0.1, 0.01] {
-            let (states, run) = simulate(model.clone(), &options(method, Steps::controlled(rtol), 0.3));
-            assert_eq!(run.outcome, Outcome::Ok);
-            let error = distance(&model, &states[0], &reference) / (0.3 * 2.0_f64.sqrt());
-            assert!(error < 1e-3, "{} {rtol}: {error}", method.name());
-            assert_eq!(run.counts.rejected, 0, "{} {rtol}", method.name());
+    for divisions in [2, 8] {
+        let model = hang(plate_of(Kind::Full48a, divisions, 0.3, 0.01, rubber()));
+        let reference = end(model.clone(), &options(Method::Esdirk, Steps::controlled(1e-4), 0.3));
+        for method in [Method::Verlet { lumped: false }, Method::Rk] {
+            for rtol in [0.3, 0.1] {
+                let found = end(model.clone(), &options(method, Steps::controlled(rtol), 0.3));
+                let error = distance(&model, &found, &reference) / (0.3 * 2.0_f64.sqrt());
+                assert!(error < 1e-3, "{divisions} {} {rtol}: {error}", method.name());
+            }
         }
     }
 }

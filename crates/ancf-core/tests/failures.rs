@@ -67,7 +67,7 @@ fn a_load_that_cannot_be_carried_ends_a_fixed_run() {
     options.outputs = vec![0.1, 0.3];
     let (states, run) = simulate(model, &options);
     assert_eq!(states.len(), 1);
-    assert!((run.reached - 0.1).abs() < 1e-12 && run.counts.rejected == 1);
+    assert!((run.reached - 0.1).abs() < 1e-12 && run.counts.rejected.total() == 1);
     let failure = failure(run.outcome);
     assert!(
         matches!(failure, Failure::NotConverged { .. } | Failure::Diverged { .. } | Failure::NotFinite { .. }),

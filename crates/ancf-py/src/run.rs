@@ -139,8 +139,11 @@ impl Run {
         dictionary.set_item("elements", counts.elements)?;
         dictionary.set_item("dofs", counts.dofs)?;
         dictionary.set_item("steps", counts.steps)?;
-        dictionary.set_item("rejected", counts.rejected)?;
-        dictionary.set_item("unsolved", counts.unsolved)?;
+        dictionary.set_item("rejected", counts.rejected.total())?;
+        dictionary.set_item("inaccurate", counts.rejected.inaccurate)?;
+        dictionary.set_item("unsolved", counts.rejected.unsolved)?;
+        dictionary.set_item("singular", counts.rejected.singular)?;
+        dictionary.set_item("not_finite", counts.rejected.not_finite)?;
         dictionary.set_item("iterations", counts.iterations)?;
         dictionary.set_item("forces", counts.forces)?;
         dictionary.set_item("factorizations", counts.factorizations)?;

@@ -219,7 +219,11 @@ def _null(value: float) -> float | None:
 def _excerpt(scene: Mapping[str, Any]) -> str:
     """Return the lines of the scene file that the settings are in."""
     bodies = {name: _only(body, _OF_BODIES) for name, body in scene["body"].items()}
-    text = tomli_w.dumps({"body": bodies, "run": _only(scene["run"], _OF_RUN)})
+    run = _only(scene["run"], _OF_RUN)
+    text = tomli_w.dumps({"body": bodies} | ({"run": run} if run else {}))
+    # A run has one of both.
+    for name, other in (("step", "rtol"), ("rtol", "step")):
+        text = text.replace(f"\n{name} = ", f"\n# instead of {other}:\n{name} = ")
     # Short lists read better in one line.
     return text.replace("[\n    ", "[").replace(",\n    ", ", ").replace(",\n]", "]")
 

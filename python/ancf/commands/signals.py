@@ -2,21 +2,30 @@
 
 from __future__ import annotations
 
+import _thread
 import signal
+import sys
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
+_MOMENT = 0.01
+"""s."""
+
 _received = False
 _deferred = False
+_told_elsewhere = sys.unraisablehook
 
 
 def watch_signals() -> None:
     """Let the first signal raise `KeyboardInterrupt`, and ignore those that follow: the command ends on it."""
-    global _received  # noqa: PLW0603  A process has one state of its signals.
+    global _received, _told_elsewhere  # noqa: PLW0603  A process has one state of its signals.
     _received = False
+    if sys.unraisablehook is not _raise_again:
+        _told_elsewhere, sys.unraisablehook = sys.unraisablehook, _raise_again
     for number in _SIGNALS:
         signal.signal(number, _receive)
 
@@ -37,6 +46,16 @@ def deferred_signals() -> Iterator[None]:
         _deferred = False
     if _received and not before:
         raise KeyboardInterrupt
+
+
+def _raise_again(lost: sys.UnraisableHookArgs) -> None:
+    """Raise `KeyboardInterrupt` once more, where Python cannot take it out of a finalizer."""
+    if isinstance(lost.exc_value, KeyboardInterrupt):
+        signal.signal(signal.SIGINT, _receive)
+        # A moment later: here it would be lost like the first.
+        threading.Timer(_MOMENT, _thread.interrupt_main).start()
+    else:
+        _told_elsewhere(lost)
 
 
 def _receive(_number: int, _frame: FrameType | None) -> None:

@@ -4,7 +4,7 @@ use crate::assembly::{StrainEnergy, System};
 use crate::error::InputError;
 use crate::nonlinear::{Failure, Kept};
 use crate::observe::State;
-use crate::report::Counts;
+use crate::report::{Counts, Rejections};
 
 use super::Options;
 use super::control::Controller;
@@ -99,9 +99,11 @@ impl Checkpoint {
         words.number(controller.last_error);
         words.number(controller.limit);
         words.count(usize::from(controller.rejected));
-        for count in
-            [counts.steps, counts.rejected, counts.unsolved, counts.iterations, counts.forces, counts.factorizations]
-        {
+        let Rejections { inaccurate, unsolved, singular, not_finite } = counts.rejected;
+        for count in [counts.steps, inaccurate, unsolved, singular, not_finite] {
+            words.count(count);
+        }
+        for count in [counts.iterations, counts.forces, counts.factorizations] {
             words.count(count);
         }
         words.count(usize::from(tangent.is_some()));
@@ -145,8 +147,12 @@ impl Checkpoint {
         let controller = Controller { step, last_error, limit, rejected: words.count()? != 0 };
         let counts = Counts {
             steps: words.count()?,
-            rejected: words.count()?,
-            unsolved: words.count()?,
+            rejected: Rejections {
+                inaccurate: words.count()?,
+                unsolved: words.count()?,
+                singular: words.count()?,
+                not_finite: words.count()?,
+            },
             iterations: words.count()?,
             forces: words.count()?,
             factorizations: words.count()?,

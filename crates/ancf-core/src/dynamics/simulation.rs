@@ -14,7 +14,7 @@ use super::stability::highest_frequency;
 use super::state::Instantaneous;
 
 /// Explicit steps after which the limit of stability is estimated again.
-const LIMIT_EVERY: usize = 100;
+const LIMIT_EVERY: usize = 20;
 /// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates.
 const STABLE: f64 = 0.9;
 
@@ -128,7 +128,9 @@ impl<'a> Simulation<'a> {
                     let count = self.counts.steps + 1;
                     self.next.t = if count >= steps { self.options.until } else { count as f64 * step };
                     self.try_step(observer).inspect_err(|failure| {
-                        self.counts.rejected += usize::from(*failure != Failure::Stopped);
+                        if *failure != Failure::Stopped {
+                            self.counts.rejected.count(failure);
+                        }
                     })?;
                 }
                 Steps::Controlled(tolerances) => {
@@ -188,19 +190,20 @@ impl<'a> Simulation<'a> {
                     }
                     if error.is_finite() {
                         self.controller.reject(h, error, power);
+                        self.counts.rejected.inaccurate += 1;
                     } else {
                         self.controller.cut(h);
+                        self.counts.rejected.not_finite += 1;
                     }
                     cause = None;
                 }
                 Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
                 Err(failure) => {
                     self.controller.cut(h);
-                    self.counts.unsolved += 1;
+                    self.counts.rejected.count(&failure);
                     cause = Some(Box::new(failure));
                 }
             }
-            self.counts.rejected += 1;
         }
     }
 

@@ -16,7 +16,7 @@ const TURNING_PRODUCTS: usize = 8;
 const DIFFERENCE: f64 = 1e-7;
 
 /// How a solution was found.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
     /// Time, or load factor, of the solution.
     pub t: f64,
@@ -140,7 +140,11 @@ impl Newton {
         self.iterate(system, *problem, Some(normal), q, last, observer)
     }
 
-    /// Iterates with the factorisation that is kept, if reuse is wanted; should that fail, without it.
+    /// Iterates with the factorisation that is kept, if reuse is wanted; should that fail, without it; should that fail in
+    /// motion, from the last state.
+    ///
+    /// Where accelerations change much in a step, as where an element snaps, what they predict may be further from the
+    /// solution than the last state. A solution found from there counts if it is a minimum, as that of a short step is.
     fn iterate(
         &mut self,
         system: &mut System,
@@ -150,13 +154,22 @@ impl Newton {
         last: Option<&[f64]>,
         observer: &dyn Observer,
     ) -> Result<Report, Failure> {
+        let final_end = |end: &Result<_, _>| matches!(end, Ok(_) | Err(Failure::Stopped | Failure::TooLarge));
         let reuse = self.options.reuse;
-        match self.attempt(reuse, system, problem, normal, q, last, observer) {
-            Err(failure) if reuse && !matches!(failure, Failure::Stopped | Failure::TooLarge) => {
+        let mut end = self.attempt(reuse, system, problem, normal, q, last, observer);
+        if reuse && !final_end(&end) {
+            q.copy_from_slice(&self.begin);
+            end = self.attempt(false, system, problem, normal, q, last, observer);
+        }
+        match last {
+            Some(state) if problem.mass != 0.0 && !final_end(&end) => {
                 q.copy_from_slice(&self.begin);
-                self.attempt(false, system, problem, normal, q, last, observer)
+                system.free().iter().for_each(|&i| q[i] = state[i]);
+                let again = self.attempt(false, system, problem, normal, q, last, observer);
+                let counts = again.as_ref().is_ok_and(|report| report.negative_pivots == 0);
+                if counts || again == Err(Failure::Stopped) { again } else { end }
             }
-            end => end,
+            _ => end,
         }
     }
 

@@ -74,7 +74,7 @@ impl Walk {
                 Ok(Step::Shortened(by)) => share *= by,
                 Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
                 Err(failure) => {
-                    path.rejected += 1;
+                    path.rejected.count(&failure);
                     self.length *= 0.5 * share;
                     share = 1.0;
                     if self.length < self.shortest {

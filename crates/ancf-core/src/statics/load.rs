@@ -113,7 +113,7 @@ fn reach(
                 return Err(failure);
             }
             Err(failure) => {
-                path.rejected += 1;
+                path.rejected.count(&failure);
                 *step = length
                     * match failure {
                         Failure::Disconnected { progress, .. } => (progress / PROGRESS[0]).clamp(1e-2, CUT),

@@ -4,7 +4,7 @@ use crate::assembly::System;
 use crate::element::Want;
 use crate::nonlinear::{Failure, Newton, Options as NewtonOptions};
 use crate::observe::{Observer, State};
-use crate::report::Counts;
+use crate::report::{Counts, Rejections};
 
 use super::{Control, Options, arc, load};
 
@@ -48,7 +48,7 @@ pub(super) struct Path<'a> {
     /// Load factors at which the structure has jumped.
     pub jumps: Vec<f64>,
     pub steps: usize,
-    pub rejected: usize,
+    pub rejected: Rejections,
     /// The load factor of the point that the observer was given last.
     pub told: Option<f64>,
     /// Iterations, evaluations and factorisations of jumps.
@@ -75,7 +75,7 @@ impl<'a> Path<'a> {
             work: 0.0,
             jumps: Vec::new(),
             steps: 0,
-            rejected: 0,
+            rejected: Rejections::default(),
             iterations: 0,
             forces: 0,
             factorizations: 0,
@@ -137,7 +137,7 @@ impl<'a> Path<'a> {
     pub fn counts(&self) -> Counts {
         let iterations = self.newton.iterations() + self.iterations;
         let Self { steps, rejected, forces, factorizations, .. } = *self;
-        Counts { steps, rejected, unsolved: rejected, iterations, forces, factorizations, ..Counts::default() }
+        Counts { steps, rejected, iterations, forces, factorizations, ..Counts::default() }
     }
 
     /// Gives the last point to the observer, unless it has it.

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from ancf.reproduce.dufva_shabana.paper import MESHES, PENDULUM_MESHES, THICKNESSES, cantilever, pendulum
+from ancf.reproduce.dufva_shabana.velocities import Steps, integrate
+from ancf.scene import Scene
 from ancf.sweep import Outcome, Timing, Variant, sweep, time_alone
 
 MODELS: dict[str, Mapping[str, Any]] = {
@@ -90,3 +92,21 @@ def run(folder: Path, *, quick: bool, repeats: int, limit: float, executor: Exec
     )
     timed = {key: timing for key, timing in zip(moving, timings, strict=True) if timing is not None}
     return Runs(outcomes, timed, repeats, limit)
+
+
+def run_velocities(quick: bool) -> dict[tuple[float, str, float], Steps]:
+    """Run the plates of Table 2 once more, with all coordinates and velocities under error control.
+
+    Returns
+    -------
+    dict of (float, str, float) to Steps
+        For each tolerance, model and thickness.
+    """
+    found = {}
+    for rtol in (1e-3,) if quick else (1e-3, 1e-4, 1e-5):
+        for name in (THIN, SOLID):
+            for thickness in THICKNESSES:
+                variant = Variant.of(pendulum(), **MODELS[name], divisions=[2, 2], thickness=thickness)
+                core = Scene.of(variant.scene).model.assemble("constant")
+                found[rtol, name, thickness] = integrate(core, 0.3, rtol)
+    return found

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from ancf.pages import Table
 from ancf.reproduce.dufva_shabana.paper import TABLE_1, TABLE_2, Seconds
 from ancf.reproduce.dufva_shabana.runs import (
@@ -14,6 +16,7 @@ from ancf.reproduce.dufva_shabana.runs import (
     Key,
     Runs,
 )
+from ancf.reproduce.dufva_shabana.velocities import Steps
 
 _MISSING = "-"
 
@@ -86,6 +89,18 @@ def steps(runs: Runs) -> Table:
                 f"{_of_paper(TABLE_2, value).ratio:g}",
             ]
         )
+    return Table(head, rows)
+
+
+def velocities(found: Mapping[tuple[float, str, float], Steps]) -> Table:
+    """Return steps and iterations over thickness where all coordinates and velocities keep the tolerance."""
+    rows = []
+    for rtol in dict.fromkeys(rtol for rtol, _, _ in found):
+        for thickness in dict.fromkeys(thickness for _, _, thickness in found):
+            both = [found[rtol, name, thickness] for name in (THIN, SOLID)]
+            rows.append([f"{rtol:g}", f"{thickness:g}", *(f"{run.steps}" for run in both)])
+            rows[-1] += [f"{run.iterations}" for run in both]
+    head = ["rtol", "thickness / m", "Model I: steps", "Model II: steps", "Model I: iterations", "Model II: iterations"]
     return Table(head, rows)
 
 

@@ -54,7 +54,7 @@ class _Equations:
         self.start = core.reference()
         self.mass = self._dense(*core.mass())
 
-    def _dense(self, rows: npt.NDArray[np.intp], columns: npt.NDArray[np.intp], values: FloatArray) -> FloatArray:
+    def _dense(self, rows: npt.NDArray[np.uintp], columns: npt.NDArray[np.uintp], values: FloatArray) -> FloatArray:
         matrix = np.zeros((self.start.size, self.start.size))
         np.add.at(matrix, (rows, columns), values)
         return matrix[np.ix_(self.free, self.free)]
