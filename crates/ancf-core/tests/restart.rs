@@ -6,7 +6,7 @@ use std::cell::Cell;
 use std::sync::Arc;
 
 use ancf_core::assembly::System;
-use ancf_core::dynamics::{self, Checkpoint, Method, Options, Steps};
+use ancf_core::dynamics::{self, Checkpoint, Method, Options, Steps, Tolerances};
 use ancf_core::model::Model;
 use ancf_core::observe::{Observer, State};
 use ancf_core::report::{Outcome, Run};
@@ -87,5 +87,22 @@ fn a_run_that_is_stopped_anywhere_goes_on_to_the_same_bits() {
         assert!(stops > 2, "{} {stops}", method.name());
         assert_eq!(found, whole.states, "{}", method.name());
         assert_eq!(counts, expected.counts, "{}", method.name());
+    }
+}
+
+/// What a rejected step has changed is not in the checkpoint: it is tried again.
+#[test]
+fn a_run_that_is_stopped_after_a_rejected_step_tries_it_again() {
+    let model = pendulum_of(1, 0.01, rubber());
+    let too_long = Tolerances { rtol: 1e-3, first_step: Some(0.1), ..Tolerances::default() };
+    let mut options = options(Method::Hht { alpha: -0.05 }, Steps::Controlled(too_long), 0.1);
+    options.newton.reuse = true;
+    let (whole, expected) = run(&model, &options, usize::MAX, &[]);
+    assert!(expected.counts.rejected.inaccurate > 1);
+    for question in 2..30 {
+        let (stopped, end) = run(&model, &options, question, &[]);
+        assert_eq!(end.outcome, Outcome::Interrupted);
+        let (found, end) = run(&model, &options, usize::MAX, &stopped.checkpoint);
+        assert_eq!((found.states.last(), end.counts), (whole.states.last(), expected.counts), "{question}");
     }
 }
