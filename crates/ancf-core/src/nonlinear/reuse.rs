@@ -96,9 +96,9 @@ mod tests {
             reuse.begin(true, coefficients);
             let tried = reuse.kept.is_some();
             if serves {
-                reuse.served()
+                reuse.served();
             } else {
-                reuse.failed()
+                reuse.failed();
             }
             tried
         };
