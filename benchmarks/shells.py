@@ -14,6 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from matplotlib.figure import Figure
+
 import ancf
 from ancf.bodies import Plate
 
@@ -75,6 +77,14 @@ def solve(scene: ancf.Scene) -> ancf.Result:
     return result
 
 
+def draw(scene: ancf.Scene) -> Figure:
+    """Solve a scene once more, with a state at every twentieth of the load unless every step is one, and draw it."""
+    document = scene.document()
+    if document["run"].get("path") != "arc":
+        document["run"]["load_factors"] = [step / 20 for step in range(1, 21)]
+    return solve(ancf.Scene.of(document)).plot(scene.title)
+
+
 def compare_variants() -> None:
     """Solve what differs from the table by more than 0.5 % in other ways, and print."""
     print("| shell | changed | steps | iterations | jumps at | displacements | differences |")
@@ -117,7 +127,7 @@ def main() -> None:
             scene = ancf.load_scene(SCENES / f"{case.scene}.toml")
             results[case.scene] = solve(scene)
             if options.plot is not None:
-                results[case.scene].plot(scene.title).savefig(options.plot / f"shell_{case.scene}.png", dpi=100)
+                draw(scene).savefig(options.plot / f"shell_{case.scene}.png", dpi=100)
         result = results[case.scene]
         (body,) = result.model.bodies.values()
         assert isinstance(body, Plate)
