@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import re
 import tomllib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -91,8 +91,8 @@ def scene(name: str) -> Callable[[Variant, Mesh], ancf.Model]:
     return make
 
 
-def twists(at: str, fix: list[str]) -> list[str]:
-    """Components of r_xy that are zero at an edge because the gradient across it is fixed all along it."""
+def twists(at: str, fix: Sequence[str]) -> list[str]:
+    """Return the components of r_xy that are zero at an edge because the gradient across it is fixed all along it."""
     return [f"r_xy{item[3:]}" for item in fix if at.startswith("edge:") and item.startswith(f"r_{at[5]}")]
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Literal, TypeAlias
 
 import numpy as np
+from linear_shells import twists
 from scipy.linalg import eigh
 
 import ancf
@@ -26,9 +27,7 @@ Row: TypeAlias = tuple[str, float, float]
 
 def support(element: Element, at: str, *fix: str) -> ancf.Support:
     """Fix components along an edge, for `thin48` also the derivatives along it of gradients across it."""
-    across = f"r_{at[5]}"
-    twists = [f"r_xy{item[3:]}" for item in fix if item.startswith(across)] if element == "thin48" else []
-    return ancf.Support(at=at, fix=[*fix, *twists])
+    return ancf.Support(at=at, fix=[*fix, *(twists(at, fix) if element == "thin48" else [])])
 
 
 ROTATING = {

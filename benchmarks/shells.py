@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from linear_shells import twists
 from matplotlib.figure import Figure
 
 import ancf
@@ -94,7 +95,12 @@ def compare_variants() -> None:
         cases = [case for case in SZE if case.scene == name]
         for changes in variants:
             body = {"shell": document["body"]["shell"] | changes}
-            result = solve(ancf.Scene.of(document | {"body": body}))
+            supports = document["support"]
+            if changes.get("element") == "thin48":
+                supports = [
+                    support | {"fix": support["fix"] + twists(support["at"], support["fix"])} for support in supports
+                ]
+            result = solve(ancf.Scene.of(document | {"body": body, "support": supports}))
             values = [float(result.probes[case.probe].value[-1, case.component]) for case in cases]
             cells = [
                 name.replace("_", " "),
