@@ -1,9 +1,9 @@
 """Shells of linear theory against published displacements: the page shows what the script prints, the scenes hold."""
 
-import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -50,13 +50,12 @@ def test_every_scene_is_here() -> None:
     assert {path.stem for path in SCENES.iterdir()} == set(SCENE)
 
 
-def test_the_page_shows_what_the_script_prints_and_it_is_near_what_is_published() -> None:
+def test_the_page_shows_what_the_script_prints_and_it_is_near_what_is_published(
+    assert_shown: Callable[[Path, str, str], None],
+) -> None:
     script = ROOT / "benchmarks" / "linear_shells.py"
     printed = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True).stdout
-    page = (ROOT / "docs" / "linear-shells.md").read_text(encoding="utf-8")
-    match = re.search(r"<!-- linear -->\n(.*?)<!-- /linear -->", page, flags=re.DOTALL)
-    assert match is not None
-    assert match[1] == printed
+    assert_shown(ROOT / "docs" / "linear-shells.md", "linear", printed)
     rows = [[cell.strip(" `") for cell in line.split("|")[1:-1]] for line in printed.splitlines()[2:]]
     finest = {(row[0], *row[2:5]): abs(float(row[-1].rstrip("%"))) for row in rows}
     for name, (thin36, thin48) in FINEST.items():

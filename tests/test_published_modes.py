@@ -1,8 +1,8 @@
 """Modes of shells and of loaded structures: the page shows what the script prints, and it is near what is known."""
 
-import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -24,11 +24,8 @@ def printed() -> str:
     return subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True).stdout
 
 
-def test_the_page_shows_what_the_script_prints(printed: str) -> None:
-    page = (ROOT / "docs" / "modes.md").read_text(encoding="utf-8")
-    match = re.search(r"<!-- modes -->\n(.*?)<!-- /modes -->", page, flags=re.DOTALL)
-    assert match is not None
-    assert match[1] == printed
+def test_the_page_shows_what_the_script_prints(printed: str, assert_shown: Callable[[Path, str, str], None]) -> None:
+    assert_shown(ROOT / "docs" / "modes.md", "modes", printed)
 
 
 @pytest.mark.parametrize("structure", list(CLOSE))
