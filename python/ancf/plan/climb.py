@@ -40,6 +40,11 @@ class Climb:
     stalled: int = 0
     ended: bool = False
 
+    def restart(self, rung: Rung) -> None:
+        """Begin anew with a rung of another family."""
+        self.next, self.rung = rung, None
+        self.exact, self.own, self.sides, self.stalled = [], np.inf, {}, 0
+
     @property
     def family(self) -> Family:
         """The element and membrane."""

@@ -10,7 +10,9 @@ import numpy as np
 
 from ancf.errors import InputError, Mistake, Mistakes, one_of, show
 from ancf.model import Model
+from ancf.plan.ascent import Ascent
 from ancf.plan.cost import Costs, as_written, calibrated
+from ancf.plan.descent import Descent
 from ancf.plan.errors import Values, distance, scales
 from ancf.plan.ladder import RIGID, Choice, Family, Rung, Stepping, apply, coarsest, families
 from ancf.plan.pilots import Pilot, Pilots
@@ -25,13 +27,20 @@ from ancf.run import Dynamic, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import solve
 
-LEAST, MOST, PROPORTION = 20.0, 300.0, 50.0
-"""Seconds that a plan may take if nothing is said: at least, at most, and relative to the scene as written."""
+LEAST, MOST, PROPORTION = 20.0, 300.0, 9.0
+"""Seconds that a plan may take if nothing is said: at least, at most, and relative to the scene as written.
+
+To check that by hand takes it once more, with twice the elements along both sides and half the steps: 9 times in all.
+"""
 _RIGID_SHARE = 0.7
 """Part of the tolerance below which the estimated deflection of a rigid body is no matter."""
+_SURELY_RIGID, _STEPS = 0.02, 60
+"""Part of the tolerance up to which the estimate is believed, and the steps of the motion that checks others."""
 _SYMMETRIC = 0.2
 """Part of the tolerance that the whole of a symmetric scene may be off its half."""
 _CHECKS = 3
+_ROUNDING = 1e-13
+"""Relative differences below it are none."""
 
 
 def plan(
@@ -59,10 +68,10 @@ def plan(
         Largest error that is allowed of each of them, over all recorded states, relative to the largest change of the
         quantity from the first state. From 1e-6 to below 1.
     budget : float, optional
-        Seconds after which pilots end; the plan then says what it can promise. If left out, 50 times what the scene
-        as it is written should take, but from 20 to 300.
+        Seconds after which pilots end; the plan then says what it can promise. If left out, 9 times what the scene
+        as it is written should take, but from 20 to 300. On one thread these are seconds of the processor.
     threads : int, optional
-        For the pilots; all if left out.
+        That pilots may use, where more than one are predicted to help; all if left out.
 
     Returns
     -------
@@ -79,15 +88,16 @@ def plan(
     scene = _scene(scene, run)
     names = _wanted(scene, want)
     _check(scene, tol, budget)
-    costs = calibrated()
+    costs = calibrated(threads=threads)
     written = as_written(scene, costs)
     if budget is None:
         budget = MOST if written is None else min(max(PROPORTION * written, LEAST), MOST)
-    pilots = Pilots(scene, names, budget, threads)
-    return replace(_planned(scene, pilots, names, costs, tol), budget=budget, seconds_as_written=written)
+    pilots = Pilots(scene, names, budget, threads, costs)
+    found = _planned(scene, pilots, costs, tol, max(written or budget, LEAST))
+    return replace(found, budget=budget, seconds_as_written=written)
 
 
-def _planned(scene: Scene, pilots: Pilots, names: list[str], costs: Costs, tol: float) -> Plan:
+def _planned(scene: Scene, pilots: Pilots, costs: Costs, tol: float, worth: float) -> Plan:
     """Plan it as rigid bodies, as the half of a symmetric scene, or as a whole."""
     allowed = families(scene.model)
     if isinstance(scene.run, Dynamic):
@@ -96,7 +106,7 @@ def _planned(scene: Scene, pilots: Pilots, names: list[str], costs: Costs, tol: 
             return _as_rigid(scene, pilots, rigid, max(bent), tol)
     part, mirrors = halved(scene)
     if mirrors:
-        found = _flexible(Pilots(part, names, pilots.left / 2, pilots.threads), allowed, costs, tol)
+        found = _flexible(Pilots(part, pilots.want, pilots.left / 2, pilots.threads, costs), allowed, costs, tol, worth)
         off = _asymmetry(pilots, found, mirrors)
         sides = " and ".join("xy"[axis] for axis in mirrors)
         reason = f"The scene is symmetric across the middle of {sides}: the low half is enough"
@@ -105,7 +115,7 @@ def _planned(scene: Scene, pilots: Pilots, names: list[str], costs: Costs, tol: 
             return replace(found, reasons=reasons, converged=False, seconds=pilots.spent)
         if off <= _SYMMETRIC * tol:
             return replace(found, reasons=[*found.reasons, f"{reason}, to {off:.1g}."], seconds=pilots.spent)
-    return _flexible(pilots, allowed, costs, tol)
+    return _flexible(pilots, allowed, costs, tol, worth)
 
 
 def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float | None:
@@ -122,17 +132,19 @@ def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float | None:
     return distance(whole.values, values, scales(values))
 
 
-def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: float) -> Plan:
-    """Plan a scene whose bodies deform."""
+def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: float, worth: float) -> Plan:
+    """Plan a scene whose bodies deform; look for nothing cheaper after `worth` seconds."""
     scene = pilots.scene
     base = coarsest(scene.model)
     timings = _timings(pilots, allowed, base, tol) if isinstance(scene.run, Dynamic) else []
     search = Search(pilots, costs, allowed, base, tol, timings)
-    if not search.up(_to_refine(search)):
+    if not Ascent(search).up(_to_refine(search)):
         raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
     scale = _scales(search.exact, pilots.want)
-    search.down()
-    search.settle()
+    descent = Descent(search, worth)
+    descent.down()
+    descent.lengthen()
+    descent.settle()
     chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
     in_space = search.observed()[chosen.choice]
     chosen, in_time = _check_time(search, chosen, scale, search.tol - in_space)
@@ -211,6 +223,7 @@ def _rigid(
         return None, []
     # Deflections need more than the corners.
     finer = Rung(family, tuple((max(x, 2), max(y, 2)) for x, y in divisions))
+    assert isinstance(pilots.scene.run, Dynamic)
     again = apply(pilots.scene, replace(pilot.choice, rung=replace(finer, family=RIGID)))
     assert isinstance(again.run, Dynamic)
     result = solve(again.model, again.run, threads=1, throw=False)
@@ -218,7 +231,13 @@ def _rigid(
     names = [probe.name for probe in elastic.probes]
     limits = [_RIGID_SHARE * tol * dict(zip(pilots.want, scale, strict=True)).get(name, np.inf) for name in names]
     bent = dict(zip(names, deflection(elastic, result, limits), strict=True))
-    return pilot, [bent[name] / size for name, size in zip(pilots.want, scale, strict=True)]
+    errors = [bent[name] / size for name, size in zip(pilots.want, scale, strict=True)]
+    if _SURELY_RIGID * tol < max(errors) <= _RIGID_SHARE * tol:
+        # Loads that change as the body oscillates add up: see what it does.
+        until = pilots.scene.run.until
+        moved = pilots.run(Choice(finer, Stepping("esdirk", step=until / _STEPS)), pilots.left / 4)
+        errors.append(distance(moved.values, pilot.values, scale) if moved.ok else np.inf)
+    return pilot, errors
 
 
 def _as_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: float) -> Plan:
@@ -226,6 +245,10 @@ def _as_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: floa
         f"No body deforms to speak of: loads and inertia change what is wanted by about {bent:.1g} of its change, "
         f"so six rigid motions do."
     )
+    assert pilot.choice.stepping is not None
+    tight = pilots.run(replace(pilot.choice, stepping=pilot.choice.stepping.tighter()))
+    in_time = distance(tight.values, pilot.values, scales(pilot.values)) if tight.ok else SHARE * tol
+    told_time = f"{pilot.choice.stepping} {_told(in_time)}."
     rows = [Row(str(p.choice), None, p.seconds, None, bent if p.ok else None, p.outcome) for p in pilots.done]
     scale = dict(zip(pilots.want, scales(pilot.values), strict=True))
     chosen = apply(scene, pilot.choice)
@@ -236,9 +259,9 @@ def _as_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: floa
         tol=tol,
         scale=scale,
         error=bent,
-        error_in_time=0.0,
-        converged=True,
-        reasons=[reason],
+        error_in_time=in_time,
+        converged=bent + in_time <= tol,
+        reasons=[reason, told_time],
         rows=rows,
         chosen=rows.index(next(row for row in rows if row.settings == str(pilot.choice))),
         seconds=pilots.spent,
@@ -265,39 +288,46 @@ def _timings(
 
 
 def _to_refine(search: Search) -> list[Family]:
-    """Return of each element the family that changes least when the coarsest mesh is refined and agrees with others.
+    """Return of each element the family that changes least when a coarse mesh is refined and agrees with others.
 
     Agreement matters because what locks hardly changes either.
     """
-    coarse: dict[Family, Values] = {}
-    fine: dict[Family, Values] = {}
-    cheapest = search.pilots.left / 8
-    for family in search.families:
-        for factor, values in ((1, coarse), (2, fine)):
-            rung = Rung(family, tuple((factor * x, factor * y) for x, y in search.base))
-            pilot = search.run(rung, 3 * cheapest + 0.02)
-            if pilot.ok:
-                values[family] = pilot.values
-        if family in fine:
-            _scales(fine[family], search.pilots.want)
-            cheapest = min(cheapest, pilot.seconds)
+    coarse, fine = (_of_families(search, factor) for factor in (1, 2))
     if not fine:
         return []
     scale = [max(sizes) for sizes in zip(*(scales(values) for values in fine.values()), strict=True)]
-
-    def doubt(family: Family) -> float:
-        change = distance(coarse[family], fine[family], scale) if family in coarse else 1.0
-        others = [distance(fine[family], values, scale) for other, values in fine.items() if other != family]
-        return change + min(others, default=0.0)
-
+    doubts = {family: _doubt(family, coarse, fine, scale) for family in fine}
     elements = dict.fromkeys(family.element for family in fine)
-    return [min((family for family in fine if family.element == element), key=doubt) for element in elements]
+    return [
+        min((family for family in fine if family.element == element), key=doubts.__getitem__) for element in elements
+    ]
+
+
+def _of_families(search: Search, factor: int) -> dict[Family, Values]:
+    """Return the wanted quantities of all families on one mesh that reach their end in time."""
+    found: dict[Family, Values] = {}
+    cheapest = search.pilots.left / 8
+    rungs = [Rung(family, tuple((factor * x, factor * y) for x, y in search.base)) for family in search.families]
+    for rung in rungs:
+        pilot = search.run(rung, 3 * cheapest + 0.02)
+        if pilot.ok:
+            _scales(pilot.values, search.pilots.want)
+            found[rung.family] = pilot.values
+            cheapest = min(cheapest, pilot.seconds)
+    return found
+
+
+def _doubt(family: Family, coarse: dict[Family, Values], fine: dict[Family, Values], scale: list[float]) -> float:
+    """Return how far a family is from its coarse mesh and, together, from the nearest other family, relative."""
+    change = distance(coarse[family], fine[family], scale) if family in coarse else 1.0
+    others = [distance(fine[family], values, scale) for other, values in fine.items() if other != family]
+    return change + min(others, default=0.0)
 
 
 def _check_time(search: Search, chosen: Pilot, scale: Sequence[float], allowed: float) -> tuple[Pilot, float]:
     """Repeat the choice with tighter steps until they no longer matter; return it with its error in time, relative."""
     stepping = chosen.choice.stepping
-    # Where there is no time to check it, what was found on a coarse mesh must do.
+    # Where it cannot be checked, what was found on a coarse mesh must do.
     error = max((t.error for t in search.timings if t.stepping == stepping), default=SHARE * search.tol)
     for _ in range(_CHECKS):
         stepping = chosen.choice.stepping
@@ -306,7 +336,9 @@ def _check_time(search: Search, chosen: Pilot, scale: Sequence[float], allowed: 
         tight = search.pilots.run(replace(chosen.choice, stepping=stepping.tighter()))
         if not tight.ok:
             break
-        error = distance(tight.values, chosen.values, scale)
+        change = distance(tight.values, chosen.values, scale)
+        # The limit of stability may set the steps of both: then tighter control tells nothing.
+        error = max(change, error) if change < _ROUNDING else change
         if error <= max(allowed, SHARE * search.tol):
             break
         chosen = tight
@@ -328,7 +360,7 @@ def _report(
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
     if chosen.choice.stepping is not None:
         reasons.append(
-            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; its error is {in_time:.2g}."
+            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; it {_told(in_time)}."
         )
     axes = "xy"
     names = list(pilots.scene.model.bodies)
@@ -346,6 +378,9 @@ def _report(
         reasons.append(
             f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.2g}."
         )
+    threads = search.costs.threads(chosen.choice)
+    if pilots.threads != 1:
+        reasons.append(f"{'One thread is' if threads == 1 else 'More threads are'} predicted to be the fastest.")
     reasons += told(pilots.scene.model, tol)
     rows = [
         Row(
@@ -373,8 +408,13 @@ def _report(
         chosen=index,
         seconds=pilots.spent,
         predicted_seconds=search.predicted.get(chosen.choice, chosen.seconds),
-        threads=1 if chosen.choice.rung.elements <= 64 else None,
+        threads=threads,
     )
+
+
+def _told(in_time: float) -> str:
+    """Say what is known of an error in time."""
+    return "has an error below rounding" if in_time < _ROUNDING else f"has an error of {in_time:.2g}"
 
 
 def _result(pilot: Pilot) -> Result:
