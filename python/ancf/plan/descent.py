@@ -10,7 +10,7 @@ import numpy as np
 
 from ancf.plan.errors import distance, scales
 from ancf.plan.guess import Guess, fit
-from ancf.plan.ladder import COUNTS, Family, Rung
+from ancf.plan.ladder import COUNTS, Choice, Family, Rung
 from ancf.plan.search import Search
 
 _TRIALS = 8
@@ -30,7 +30,7 @@ _HOPE = 3.0
 _NEAR, _SHORT = 1.5, 0.1
 """Times the cheapest, and seconds, up to which a run is repeated before one is chosen."""
 _LONGER = (2.0, 1.5)
-"""Times the steps of the cheapest rung that are tried last."""
+"""Times the steps of the cheapest rung that are tried last, as long as they are good enough and cheaper."""
 
 
 @dataclass(frozen=True)
@@ -98,14 +98,21 @@ class Descent:
             if stepping != current.choice.stepping:
                 self.search.pilots.run(replace(current.choice, stepping=stepping), _WORTH * self._limit())
         for factor in _LONGER:
-            current = self.search.cheapest(self.search.observed())
-            assert current is not None
-            assert current.choice.stepping is not None
-            longer = current.choice.stepping.longer(factor)
-            if longer is None:
-                break
-            self.search.allowed.append(longer)
-            self.search.pilots.run(replace(current.choice, stepping=longer), self._limit())
+            while (longer := self._longer(factor)) is not None:
+                pilot = self.search.pilots.run(longer, self._limit())
+                if pilot is not self.search.cheapest(self.search.observed()):
+                    break
+
+    def _longer(self, factor: float) -> Choice | None:
+        """Return the cheapest choice with steps that are longer by a factor, and allow them."""
+        current = self.search.cheapest(self.search.observed())
+        assert current is not None
+        assert current.choice.stepping is not None
+        longer = current.choice.stepping.longer(factor)
+        if longer is None:
+            return None
+        self.search.allowed.append(longer)
+        return replace(current.choice, stepping=longer)
 
     def _limit(self) -> float:
         current = self.search.cheapest(self.search.observed())
