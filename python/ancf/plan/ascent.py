@@ -74,13 +74,14 @@ class Ascent:
         self.search.climbs = [Climb(_doubled(Rung(family, self.search.base))) for family in families]
         while going := [climb for climb in self.search.climbs if not climb.ended]:
             self._step(min(going, key=lambda climb: self.search.predict(climb.next) or 0.0))
-            if (
-                any(climb.rung for climb in self.search.climbs)
-                and self.search.own <= BEST * self.search.tol
-                and self._confirmed(self.search.best)
-            ):
+            if any(climb.rung for climb in self.search.climbs) and self._enough():
                 break
         return any(climb.rung for climb in self.search.climbs)
+
+    def _enough(self) -> bool:
+        """Tell whether the error of the leading climb is small enough, and trusted."""
+        lead = self.search.lead
+        return lead.refined and lead.own <= BEST * self.search.tol and self._confirmed(self.search.best)
 
     def _step(self, climb: Climb) -> None:
         """Run the next rung of a climb and learn from it, or end the climb."""
@@ -199,8 +200,10 @@ class Ascent:
             for side in refined:
                 part = total * expected.get(side, 0.0) / share if share else total
                 climb.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
-        climb.rung, climb.exact = rung, values
-        climb.own = sum(side.error for side in climb.sides.values()) if climb.sides else np.inf
+        climb.rung, climb.exact, climb.refined = rung, values, last is not None
+        # Nothing is known of a side along which no coarser rung reached its end.
+        known = all(side in climb.sides for side in rung.sides())
+        climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
         if last is not None and refined:
             self._extrapolate(climb, last, scale, refined)
 
@@ -240,7 +243,7 @@ class Ascent:
         """Double the elements along the sides whose error dominates."""
         rung = climb.next
         errors = {at: side.error for at, side in climb.sides.items()}
-        if max(errors.values(), default=0.0) <= _SMALL_SIDE * self.search.tol:
+        if np.isinf(climb.own) or max(errors.values()) <= _SMALL_SIDE * self.search.tol:
             return _doubled(rung)
         worst = max(errors.values())
         for at, error in errors.items():

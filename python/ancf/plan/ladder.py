@@ -91,6 +91,10 @@ class Stepping:
         """Whether the highest frequency limits the step."""
         return self.method in ("verlet", "rk")
 
+    def like(self, other: Stepping) -> bool:
+        """Tell whether it is of the same method and control as another one."""
+        return (self.method, self.step is None, self.reuse) == (other.method, other.step is None, other.reuse)
+
     def tighter(self) -> Stepping:
         """Return one of at most a quarter of the error."""
         if self.step is not None:

@@ -87,6 +87,11 @@ class Search:
             return None
         return min(self.timings, key=lambda timing: self.predict_with(rung, timing)).stepping
 
+    def found(self, stepping: Stepping) -> Stepping:
+        """Return the stepping of the same kind that was found on the coarse mesh, from which it was made longer."""
+        same = (t.stepping for t in self.timings if t.stepping.like(stepping))
+        return next(same, stepping)
+
     def predict_with(self, rung: Rung, timing: Timing) -> float:
         """Return the seconds of a rung with a stepping, from the pilot with it that is most like the rung."""
         like = self._like(rung, timing.stepping)
