@@ -1,4 +1,4 @@
-"""The scenes of the benchmark of plans: those on which the planner was developed, and those that it had not seen."""
+"""The scenes of the benchmark of plans: those on which the planner was developed, and those made later."""
 
 from __future__ import annotations
 
@@ -147,8 +147,8 @@ def motions() -> Iterator[Case]:
     )
 
 
-def unseen_statics() -> Iterator[Case]:
-    """Yield scenes of statics that no choice in the planner was made for."""
+def later_statics() -> Iterator[Case]:
+    """Yield the scenes of statics made later."""
     run = ancf.Static(load_factors=[0.3, 1.0])
     foot = ancf.Support(at="edge:y0", clamp=True)
     disc = ancf.Annulus(radii=(0.1, 0.3), angle=1.5, divisions=(4, 4), thickness=2e-3, material=STEEL)
@@ -175,8 +175,8 @@ def unseen_statics() -> Iterator[Case]:
     yield Case(scene("block twisted", block, [WALL], [twist], (0.1, 0.0), run), ((32, 16), (32, 16)))
 
 
-def unseen_motions() -> Iterator[Case]:
-    """Yield scenes of motion that no choice in the planner was made for."""
+def later_motions() -> Iterator[Case]:
+    """Yield the scenes of motion made later."""
     x, y = (1, 2, 3, 4, 6, 8, 12), (1, 2, 4)
     foot = ancf.Support(at="edge:y0", clamp=True)
     sheet = plate((0.2, 0.1), 5e-4, PAPER)
@@ -243,7 +243,7 @@ def developed() -> Iterator[Case]:
     yield from statics()
 
 
-def unseen() -> Iterator[Case]:
-    """Yield the scenes that no choice in the planner was made for."""
-    yield from unseen_motions()
-    yield from unseen_statics()
+def made_later() -> Iterator[Case]:
+    """Yield the scenes that were made when the planner was ready, to see how far it carries."""
+    yield from later_motions()
+    yield from later_statics()

@@ -102,6 +102,27 @@ def test_what_loads_that_change_add_up_to_is_not_rigid() -> None:
     assert distance([plan.result.probes["A"].value], [values], scales([values])) < 0.1
 
 
+def test_nothing_is_promised_of_a_side_without_a_coarser_neighbour() -> None:
+    """On one element along a sagging sheet `thin48` finds no stable equilibrium, on two by two all elements agree."""
+
+    def sheet(divisions: tuple[int, int], element: str) -> ancf.Model:
+        plate = ancf.Rectangle(
+            size=(0.2, 0.05),
+            divisions=divisions,
+            thickness=1e-4,
+            material=ancf.Material(E=3e9, nu=0.2, density=800.0),
+            element=element,  # type: ignore[arg-type]
+        )
+        supports = [ancf.Support(at="edge:x0", clamp=True)]
+        probes = [ancf.Probe(name="A", at=(0.2, 0.05))]
+        return ancf.Model(bodies={"sheet": plate}, supports=supports, loads=[WEIGHT], probes=probes)
+
+    run = ancf.Static(load_factors=[0.5, 1.0])
+    plan = ancf.plan(sheet((2, 2), "thin36"), run=run, tol=1e-2, threads=1)
+    exact = ancf.solve_static(sheet((24, 3), "thin48"), load_factors=[0.5, 1.0]).probes["A"].value
+    assert distance([plan.result.probes["A"].value], [exact], scales([exact])) < 1e-2
+
+
 def test_a_family_that_locks_is_left_for_another_of_its_element() -> None:
     """On coarse meshes of a thin cap the membranes that lock change least; they would need 64 x 64 elements."""
 
