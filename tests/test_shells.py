@@ -19,7 +19,7 @@ CASES = {
     "cantilever_shear": [("end", 2, 6.698, 0.005), ("end", 0, -3.286, 0.005)],
     "cantilever_moment": [("end", 0, -12.0, 0.005)],
     "slit_annulus": [("A", 2, 13.891, 0.005), ("B", 2, 17.528, 0.005)],
-    "pinched_hemisphere": [("outwards", 0, 4.067, 0.005), ("inwards", 1, -8.178, 0.009)],
+    "pinched_hemisphere": [("outwards", 0, 4.067, 0.005), ("inwards", 1, -8.178, 0.005)],
     "pulled_cylinder": [("A", 1, 2.768, 0.009), ("B", 0, -4.551, 0.005), ("C", 0, -3.269, 0.013)],
 }
 
