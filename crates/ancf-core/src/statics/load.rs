@@ -129,8 +129,9 @@ fn reach(
                     failed = PATIENCE - 1;
                 }
                 lost = to.t;
-                if from.held == 0.0 && (failed == PATIENCE || *step < options.min_step) {
-                    jump::pass(path, *step, target.t, options, observer)?;
+                let unstable = matches!(failure, Failure::Unstable { .. });
+                if from.held == 0.0 && (unstable || failed == PATIENCE || *step < options.min_step) {
+                    jump::pass(path, [*step, target.t], unstable, options, observer)?;
                     *step = GROWN * length;
                     (rate, failed) = (None, 0);
                     observer.reached(path.at.load.t);
