@@ -65,7 +65,7 @@ impl Walk {
 
     /// The same without a longest step, but for the change of the load factor along the tangent: where a path turns away
     /// from its first direction it may have to go much farther for the same load.
-    pub fn as_far_as_the_load(self) -> Self {
+    pub fn bounded_by_load(self) -> Self {
         Self { longest: f64::INFINITY, ..self }
     }
 

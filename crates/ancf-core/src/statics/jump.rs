@@ -42,7 +42,7 @@ pub(super) fn pass(
     let direction = (target - start).signum();
     let longest = if unstable { length } else { PASSED * length };
     let passed = if unstable { PASSED_UNSTABLE } else { PASSED } * length;
-    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]).as_far_as_the_load();
+    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]).bounded_by_load();
     let (mut stable, mut farthest) = (path.at.q.clone(), start);
     let mut stuck = None;
     let mut jumps = 0;
