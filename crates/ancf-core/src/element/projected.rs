@@ -73,7 +73,7 @@ pub(super) fn add<S: Simd, const N: usize>(
     }
     patch.add_forces(&forces, &mut totals.force);
     if let Some(tangent) = tangent {
-        patch.moments.add(&mut tangent.forms[..3 * POINTS], &mut tangent.blocks);
+        tangent.add_moments(&patch.moments, 3 * POINTS);
         let mut vectors = [[zero; 3]; 2 * POINTS];
         for g in 0..POINTS {
             vectors[2 * g..2 * g + 2].copy_from_slice(&at[g].gradients);
