@@ -378,7 +378,8 @@ mod tests {
             });
         }
         let vectors = (0..ELEMENTS).map(|e| std::array::from_fn(|a| (e * N + a) as u32)).collect();
-        let material = Material::new(1e5, 0.3, 1e3).unwrap().with_damping(Damping { mass: 0.4, viscosity: 0.02 }).unwrap();
+        let material =
+            Material::new(1e5, 0.3, 1e3).unwrap().with_damping(Damping { mass: 0.4, viscosity: 0.02 }).unwrap();
         (Block::new(tables, vectors, &q, Section { material, thickness: THICKNESS }), q)
     }
 
