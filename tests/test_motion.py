@@ -111,7 +111,7 @@ acceleration = [0, 0, -9.81]
 
 [run]
 kind = "dynamic"
-until = 2.0
+until = 1.2
 step = 5e-4
 reuse = true
 every = 0.01

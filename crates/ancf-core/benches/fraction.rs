@@ -97,8 +97,11 @@ fn row(element: Kind, membrane: Option<Membrane>, n: usize, curved: bool) {
     let all: Vec<u32> = (0..(n * n) as u32).collect();
     let mut cells = String::new();
     for (want, operations) in [(None, operations.force), (Some(tangent), operations.tangent)] {
-        let mut work =
-            || elements.evaluate(&all, At::rest(black_box(&q)), want, &mut |portion| drop(black_box(portion)));
+        let mut work = || {
+            elements.evaluate(&all, At::rest(black_box(&q)), want, &mut |portion| {
+                black_box(&portion);
+            });
+        };
         let once = seconds(1, &mut work);
         let calls = (SPAN / once).ceil() as usize;
         let pairs = (0..REPETITIONS).map(|_| {

@@ -13,7 +13,7 @@ use super::numbering::Numbering;
 const FEW: usize = 128;
 
 /// Least and most nodes of a part otherwise: enough elements for the lanes, and columns that stay in the cache of a core.
-const NODES: [usize; 2] = [32, 256];
+const NODES: [usize; 2] = [64, 256];
 
 /// The number of parts wanted, if their sizes allow: several for each thread, so that none waits for long.
 const WANTED: usize = 32;

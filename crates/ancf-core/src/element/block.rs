@@ -1,5 +1,7 @@
 //! All elements of a body: what they share, and their energies, forces and tangents side by side.
 
+use std::cell::Cell;
+
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::lanes::{Aligned, Lanes, MAX_LANES, Transpose, Vector, arch};
@@ -213,6 +215,11 @@ impl<const N: usize> ElementBlock for Block<N> {
     }
 }
 
+thread_local! {
+    /// Memory for the tangents of a portion, kept from call to call: the system would clear it anew each time.
+    static TANGENTS: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
+}
+
 /// Elements, evaluated with the instruction set that the processor has.
 struct Task<'a, 'b, const N: usize> {
     block: &'a Block<N>,
@@ -230,7 +237,8 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
         let Self { block, elements, at, want, take } = self;
         let mut combined = want.map(|_| Tangent::<S, N>::new(simd));
         let size = if want.is_some() { tangent_size(N) } else { 0 };
-        let mut tangent = vec![0.0; size * S::F64_LANES];
+        let mut tangent = TANGENTS.take();
+        tangent.resize(size * S::F64_LANES, 0.0);
         let mut force = [[[0.0; 3]; N]; MAX_LANES];
         let (mut constants, mut mass) = (Vec::new(), Vec::new());
         let Damping { mass: mass_damping, viscosity } = block.damping;
@@ -308,6 +316,7 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
             }
             take(Portion { elements, energy: &energy[..count], rates: &rates[..count], force, tangent });
         }
+        TANGENTS.set(tangent);
     }
 }
 
