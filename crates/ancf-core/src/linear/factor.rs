@@ -78,12 +78,11 @@ impl Factorization {
     ///
     /// [`LinearError::TooLarge`] when the memory does not suffice.
     pub fn new(pattern: Arc<Pattern>) -> Result<Self, LinearError> {
-        let tree = Tree::new(&pattern)?;
+        let tree = Tree::new(&pattern);
         let zeros = |length: usize| {
-            let mut numbers = Vec::new();
-            numbers.try_reserve_exact(length).map_err(|_| LinearError::TooLarge { n: pattern.n() })?;
-            numbers.resize(length, 0.0);
-            Ok(numbers)
+            Vec::<f64>::new().try_reserve_exact(length).map_err(|_| LinearError::TooLarge { n: pattern.n() })?;
+            // Zeros that the system hands out when they are first touched, which the threads do.
+            Ok(vec![0.0; length])
         };
         let (factor, updates) = (zeros(tree.size())?, zeros(tree.workspace)?);
         Ok(Self { pattern, tree, factor, updates, solution: Solution::default(), valid: false })

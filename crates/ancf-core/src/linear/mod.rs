@@ -4,11 +4,13 @@
 //! from it. From then on only values change: assembly refills an array laid out as the pattern,
 //! [`Factorization::factorize`] and [`Factorization::solve`] work in storage that was allocated once.
 
+mod elimination;
 mod error;
 mod factor;
 mod front;
 mod gmres;
 mod ordering;
+mod panel;
 mod pattern;
 mod solve;
 mod sparse;

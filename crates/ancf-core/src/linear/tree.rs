@@ -2,44 +2,8 @@
 
 use std::ops::Range;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::linalg::cholesky::simplicial::{
-    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
-};
-
-use super::{LinearError, Pattern};
-
-/// Elimination tree of a pattern and the number of entries in each column of its factor.
-///
-/// # Source
-///
-/// Davis, Direct Methods for Sparse Linear Systems (2006), chapter 4.
-pub(super) struct Elimination {
-    /// The column whose elimination needs this one's first; `None` at a root.
-    pub parent: Vec<Option<usize>>,
-    /// Entries of each column, the diagonal included.
-    pub counts: Vec<usize>,
-}
-
-impl Elimination {
-    pub fn new(pattern: &Pattern) -> Result<Self, LinearError> {
-        let n = pattern.n();
-        // faer analyses the upper triangle
-        let upper = pattern.lower().transpose().to_col_major().map_err(|_| LinearError::TooLarge { n })?;
-        let scratch = prefactorize_symbolic_cholesky_scratch::<usize>(n, pattern.nnz());
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| LinearError::TooLarge { n })?;
-        let (mut tree, mut counts) = (vec![0; n], vec![0; n]);
-        let stack = MemStack::new(&mut memory);
-        let tree = prefactorize_symbolic_cholesky(&mut tree, &mut counts, upper.as_ref(), stack);
-        let parent = tree.into_inner().iter().map(|&parent| usize::try_from(parent).ok()).collect();
-        Ok(Self { parent, counts })
-    }
-
-    /// Multiplications of the numeric factorisation, up to a constant factor.
-    pub fn work(&self) -> f64 {
-        self.counts.iter().map(|&count| (count as f64).powi(2)).sum()
-    }
-}
+use super::elimination::Elimination;
+use super::{Pattern, front};
 
 /// Numbers that follow each other in two arrays.
 #[derive(Debug, Clone, Copy)]
@@ -90,7 +54,7 @@ impl Front {
 
     /// Working memory while it is eliminated: the update and a scaled copy of a block of columns.
     pub fn workspace(&self) -> usize {
-        self.below * self.below + self.rows() * self.columns.len().min(super::front::BLOCK)
+        self.below * self.below + self.rows() * self.columns.len().min(front::BLOCK)
     }
 }
 
@@ -128,13 +92,13 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    pub fn new(pattern: &Pattern) -> Result<Self, LinearError> {
-        let mut supernodes = Supernodes::new(&Elimination::new(pattern)?);
+    pub fn new(pattern: &Pattern) -> Self {
+        let mut supernodes = Supernodes::new(&Elimination::new(pattern));
         supernodes.merge();
         let mut tree = supernodes.arrange(pattern);
         tree.place(pattern);
         tree.plan();
-        Ok(tree)
+        tree
     }
 
     /// Entries of the factor.
@@ -155,49 +119,22 @@ impl Tree {
     /// Finds the rows of each front, where they are in its parent, and where the entries of the matrix are.
     fn place(&mut self, pattern: &Pattern) {
         let n = pattern.n();
-        let mut place = vec![0; n];
+        let mut place = vec![0_u32; n];
         for (k, &column) in self.order.iter().enumerate() {
-            place[column] = k;
+            place[column] = k as u32;
         }
-        let mut front_of = vec![0; n];
-        for (f, front) in self.fronts.iter().enumerate() {
-            front_of[front.columns.clone()].fill(f);
-        }
-        // Entries of the matrix by the front that eliminates them.
-        let mut count = vec![0; self.fronts.len() + 1];
-        let entry = |column: usize, row: usize| {
-            let (a, b) = (place[column], place[row]);
-            (a.min(b), a.max(b))
-        };
-        for column in 0..n {
-            for &row in pattern.rows(column) {
-                count[front_of[entry(column, row).0] + 1] += 1;
-            }
-        }
-        for f in 0..self.fronts.len() {
-            count[f + 1] += count[f];
-        }
-        let mut next = count.clone();
-        let mut entries = vec![(0, 0, 0); pattern.nnz()];
-        for column in 0..n {
-            for (k, &row) in pattern.rows(column).iter().enumerate() {
-                let (first, second) = entry(column, row);
-                let f = front_of[first];
-                entries[next[f]] = (pattern.col_ptr()[column] + k, first as u32, second as u32);
-                next[f] += 1;
-            }
-        }
-
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); self.fronts.len()];
         let mut local = vec![0; n];
         let mut seen_in = vec![usize::MAX; n];
         let (mut factor, mut vector) = (0, 0);
         for f in 0..self.fronts.len() {
             let Front { columns, children, .. } = self.fronts[f].clone();
-            let own = &entries[count[f]..count[f + 1]];
             let mut below = Vec::new();
-            let of_children = self.children[children.clone()].iter().flat_map(|&child| &rows[child]);
-            for &row in own.iter().map(|entry| &entry.2).chain(of_children) {
+            // What couples with a column and is eliminated later stays later: it is above it in the tree.
+            let own = &self.order[columns.clone()];
+            let of_columns = own.iter().flat_map(|&column| pattern.rows(column)).map(|&row| place[row]);
+            let of_children = self.children[children.clone()].iter().flat_map(|&child| &rows[child]).copied();
+            for row in of_columns.chain(of_children) {
                 let i = row as usize;
                 if i >= columns.end && seen_in[i] != f {
                     seen_in[i] = f;
@@ -216,9 +153,11 @@ impl Tree {
             }
             let height = columns.len() + below.len();
             let begin = self.entries.len();
-            let places = own
-                .iter()
-                .map(|&(slot, column, row)| (slot, (column as usize - columns.start) * height + local[row as usize]));
+            let places = own.iter().enumerate().flat_map(|(k, &column)| {
+                let slots = pattern.col_ptr()[column]..;
+                let (place, local) = (&place, &local);
+                slots.zip(pattern.rows(column)).map(move |(slot, &row)| (slot, k * height + local[place[row] as usize]))
+            });
             join(&mut self.entries, places);
             let front = &mut self.fronts[f];
             front.below = below.len();
@@ -318,33 +257,35 @@ struct Supernodes {
 }
 
 impl Supernodes {
-    /// Chains of columns with the same rows.
+    /// Chains of groups of columns with the same rows.
     fn new(elimination: &Elimination) -> Self {
-        let Elimination { parent, counts } = elimination;
+        let Elimination { parent, counts, .. } = elimination;
         let n = parent.len();
         let mut children = vec![0; n];
         parent.iter().flatten().for_each(|&parent| children[parent] += 1);
-        let mut of_column = vec![usize::MAX; n];
+        let mut of_group = vec![usize::MAX; n];
+        let mut last = Vec::new();
         let mut columns: Vec<Vec<usize>> = Vec::new();
-        for column in 0..n {
-            if of_column[column] != usize::MAX {
+        for group in 0..n {
+            if of_group[group] != usize::MAX {
                 continue;
             }
-            let mut chain = vec![column];
-            let mut last = column;
-            while let Some(next) = parent[last]
+            let mut chain: Vec<usize> = elimination.columns(group).collect();
+            let mut end = group;
+            of_group[group] = columns.len();
+            while let Some(next) = parent[end]
                 && children[next] == 1
-                && counts[next] + 1 == counts[last]
+                && counts[next] + elimination.columns(end).len() == counts[end]
             {
-                chain.push(next);
-                last = next;
+                chain.extend(elimination.columns(next));
+                of_group[next] = columns.len();
+                end = next;
             }
-            chain.iter().for_each(|&column| of_column[column] = columns.len());
+            last.push(end);
             columns.push(chain);
         }
-        let last = |chain: &Vec<usize>| *chain.last().expect("a column");
-        let below = columns.iter().map(|chain| counts[last(chain)] - 1).collect();
-        let parent = columns.iter().map(|chain| parent[last(chain)].map(|column| of_column[column])).collect();
+        let below = last.iter().map(|&group| counts[group] - elimination.columns(group).len()).collect();
+        let parent = last.iter().map(|&group| parent[group].map(|group| of_group[group])).collect();
         let zeros = vec![0; columns.len()];
         Self { columns, below, parent, zeros }
     }
