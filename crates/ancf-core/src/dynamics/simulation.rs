@@ -20,7 +20,7 @@ const STABLE: f64 = 0.9;
 /// Change of the squared highest frequency in an iteration at which it is found: for a step that the limit may refuse, and
 /// where the share above covers what is missing.
 const PRECISE: f64 = 1e-6;
-const ROUGH: f64 = 1e-3;
+const ROUGH: f64 = 1e-2;
 
 /// A motion while it is computed.
 pub(super) struct Simulation<'a> {

@@ -2,6 +2,7 @@
 
 use crate::assembly::System;
 use crate::element::Want;
+use crate::linear::multiply_add;
 
 use super::inertia::Inertia;
 
@@ -18,7 +19,7 @@ pub(super) fn highest_frequency(system: &mut System, inertia: &mut Inertia, t: f
     let mut force = vec![0.0; q.len()];
     let want = Want { mass: 0.0, stiffness: 1.0, previous: None };
     system.assemble(q, t, want, &mut force);
-    let (stiffness, free) = (system.tangent_matrix(), system.free());
+    let ((pattern, stiffness), free) = (system.tangent(), system.free());
     let of_free = |x: &[f64], factor: f64| -> Vec<f64> { free.iter().map(|&k| factor * x[k]).collect() };
     // Numbers without a pattern, so that no mode is missed; a linear congruential generator with Knuth's constants.
     let mut seed = 1_u64;
@@ -35,7 +36,7 @@ pub(super) fn highest_frequency(system: &mut System, inertia: &mut Inertia, t: f
     force.fill(0.0);
     for _ in 0..MOST.min(free.len()) {
         let mut r = vec![0.0; free.len()];
-        stiffness.multiply_add::<1>(&v, &mut r);
+        multiply_add::<1>(pattern, stiffness, &v, &mut r);
         let alpha = dot(&v, &r);
         for ((r, p), before) in r.iter_mut().zip(&p).zip(&p_before) {
             *r -= alpha * p + beta * before;

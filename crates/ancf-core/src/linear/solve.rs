@@ -114,7 +114,7 @@ impl<'a> Solver<'a> {
                     }
                 }
             }
-            own.chunks_exact_mut(rows).for_each(|own| panel::forward(self.arch, self.panel(front), own));
+            panel::forward(self.arch, self.panel(front), own, rows);
         }
     }
 
@@ -142,7 +142,7 @@ impl<'a> Solver<'a> {
                     }
                 }
             }
-            own.chunks_exact_mut(rows).for_each(|own| panel::backward(self.arch, self.panel(front), own));
+            panel::backward(self.arch, self.panel(front), own, rows);
         }
     }
 }
