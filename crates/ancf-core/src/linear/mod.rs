@@ -14,6 +14,7 @@ mod panel;
 mod pattern;
 mod solve;
 mod sparse;
+mod supernodes;
 #[cfg(test)]
 mod testing;
 mod tree;
