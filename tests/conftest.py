@@ -1,7 +1,9 @@
 """What several tests need."""
 
 import os
+import re
 from collections.abc import Callable
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -51,3 +53,28 @@ def pendulum(rubber: ancf.Material) -> ancf.Model:
         loads=[ancf.Gravity(acceleration=(0.0, 0.0, -9.81))],
         probes=[ancf.Probe(name="A", at=(0.3, 0.3))],
     )
+
+
+@pytest.fixture
+def assert_shown() -> Callable[[Path, str, str], None]:
+    """Compare the table between the marks of a page with what a script prints, up to the last digit of percentages.
+
+    Instruction sets round differently.
+    """
+
+    def cells(text: str) -> list[list[str]]:
+        return [[cell.strip() for cell in line.split("|")] for line in text.strip().splitlines()]
+
+    def compare(page: Path, mark: str, printed: str) -> None:
+        match = re.search(rf"<!-- {mark} -->\n(.*?)<!-- /{mark} -->", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+        assert match is not None
+        shown, found = cells(match[1]), cells(printed)
+        assert [len(row) for row in shown] == [len(row) for row in found]
+        for known, new in zip(chain(*shown), chain(*found), strict=True):
+            if known.endswith("%"):
+                digit = 10.0 ** -len(known[:-1].partition(".")[2])
+                assert abs(float(known[:-1]) - float(new[:-1])) < 1.5 * digit, f"{new}, shown {known}"
+            else:
+                assert new == known
+
+    return compare

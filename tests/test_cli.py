@@ -232,7 +232,8 @@ thing = Thing()
 reference = weakref.ref(thing, last)
 try:
     del thing
-    time.sleep(30)
+    for _ in range(300):
+        time.sleep(0.1)
 except KeyboardInterrupt:
     print("interrupted")
 """

@@ -44,6 +44,39 @@ def test_fields_are_those_of_evaluate(pendulum: ancf.Model, tmp_path: Path) -> N
         assert (np.sum(normals.point_data["Normals"] * grid.point_data["normal"], axis=1) > 0.9).all()
 
 
+def test_a_curved_shell_has_curved_facets_and_the_stresses_of_its_probes(tmp_path: Path) -> None:
+    steel = ancf.Material(E=2e11, nu=0.3)
+    shell = ancf.Cylinder(radius=2, angle=(0, 1), length=(0, 1), divisions=(2, 1), thickness=0.01, material=steel)
+    at = (0.25, 0.5)
+    model = ancf.Model(
+        bodies={"shell": shell},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.Pressure(pressure=1e4)],
+        probes=[
+            ancf.Probe(name="force", at=at, quantity="membrane_force"),
+            ancf.Probe(name="moment", at=at, quantity="moment"),
+            ancf.Probe(name="top", at=at, quantity="stress_top"),
+            ancf.Probe(name="mises", at=at, quantity="von_mises_bottom"),
+        ],
+    )
+    result = ancf.solve_static(model, load_factors=[0.5, 1.0])
+    result.write_fields(tmp_path / "fields.pvd", subdivisions=8)
+    states = read(tmp_path / "fields.pvd")
+    assert [time for time, _ in states] == [0, 0.5, 1]
+    rest = states[0][1]
+    angle, z = rest.point_data["natural_coordinates"].T
+    # A cubic Hermite arc of the angle a is off by R a^4 / 384; 16 flat facets of 1/16 lose a share of (1/16)^2 / 24.
+    on_arc = np.stack([2 * np.cos(angle), 2 * np.sin(angle), z], axis=1)
+    np.testing.assert_allclose(rest.points, on_arc, atol=2 * 0.5**4 / 384, rtol=0)
+    assert rest.compute_cell_sizes()["Area"].sum() == pytest.approx(2, rel=2 / 16**2 / 24)
+    for state, (_, grid) in enumerate(states):
+        (point,) = np.flatnonzero((np.abs(grid.point_data["natural_coordinates"] - at) < 1e-12).all(axis=1))
+        for probe in model.probes:
+            found = np.atleast_1d(grid.point_data[probe.quantity][point])
+            np.testing.assert_allclose(found, result.probes[probe.name].value[state], rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(states[2][1].points - rest.points, states[2][1].point_data["displacement"], atol=1e-12)
+
+
 def test_a_second_run_leaves_nothing_of_the_first(pendulum: ancf.Model, tmp_path: Path) -> None:
     path = tmp_path / "fields.pvd"
     ancf.simulate(pendulum, until=0.02, step=5e-3).write_fields(path, subdivisions=1)

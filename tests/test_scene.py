@@ -29,3 +29,9 @@ def test_output_times() -> None:
     assert times(every=1.0) == [0.0, 0.3]
     assert Dynamic(until=0.3, step=0.1).times()[-1] == 0.3
     assert len(Dynamic(until=0.3, step=0.1).times()) == 4
+
+
+def test_a_byte_order_mark_is_no_mistake(scenes: Path, tmp_path: Path) -> None:
+    path = tmp_path / "marked.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + (scenes / "pendulum.toml").read_bytes())
+    assert ancf.load_scene(path).title == "Small pendulum"

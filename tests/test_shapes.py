@@ -90,6 +90,47 @@ def test_every_element_rests_on_every_shape(element: str) -> None:
         assert sum(shell._assembled.energy(q)) < 1e-20 * sum(stretched)
 
 
+MAPS: dict[str, tuple[Any, Any, float]] = {
+    # Domain, position, area.
+    "helicoid": (
+        ((0.0, 3.0), (-1.0, 1.0)),
+        lambda x, y: (y * np.cos(x), y * np.sin(x), 0.3 * x),
+        3 * (np.sqrt(1.09) + 0.09 * np.arcsinh(1 / 0.3)),
+    ),
+    "torus": (
+        ((0.0, 2.0), (0.0, 1.5)),
+        lambda x, y: ((3 + np.cos(y)) * np.cos(x), (3 + np.cos(y)) * np.sin(x), np.sin(y)),
+        2 * (3 * 1.5 + np.sin(1.5)),
+    ),
+}
+
+
+@pytest.mark.parametrize("element", ["thin36", "thin48"])
+@pytest.mark.parametrize("name", list(MAPS))
+def test_maps_have_their_mass_and_turn_without_stress(name: str, element: Any) -> None:
+    domain, position, area = MAPS[name]
+    errors = []
+    for divisions in ((4, 4), (8, 8), (16, 16)):
+        body = ancf.Surface(
+            domain=domain, position=position, element=element, divisions=divisions, thickness=0.02, material=STEEL
+        )
+        shell = model(body)
+        core = ancf.Model(bodies={"shell": body}, loads=[ancf.Gravity(acceleration=(1.0, 0.0, 0.0))]).assemble(
+            "constant"
+        )
+        positions = core.vectors("shell")[:, 0].astype(int)
+        mass = core.external_force(shell.nodal_coordinates(), 0.0)[positions].sum()
+        errors.append(abs(mass / (7800 * 0.02 * area) - 1))
+        rotation = np.linalg.qr([[1.0, 2.0, 0.5], [0.3, 1.0, -2.0], [-1.0, 0.7, 0.2]])[0]
+        turned = (shell.nodal_coordinates().reshape(-1, 3) @ rotation).ravel()
+        turned[positions] += 5
+        stretched = sum(core.energy(1.001 * shell.nodal_coordinates()))
+        # A reflection as well: no strain.
+        assert sum(core.energy(turned)) < 1e-18 * stretched
+    assert errors[2] < 1e-5
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.2)
+
+
 def test_pressure_vessel() -> None:
     """A cylinder under internal pressure p, free to grow: the hoop force is p R, the stress p R / h."""
     R, h, p = 2.0, 0.01, 1e4

@@ -87,6 +87,12 @@ def test_statics_have_no_map(scenes: Path, tmp_path: Path, capsys: pytest.Captur
     assert "either a scene or --suite" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("ignored", [("--against", "thickness"), ("--limit", "1"), ("--methods", "hht")])
+def test_the_suite_has_no_axes(ignored: tuple[str, str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["stability", "--suite", *ignored, "-o", str(tmp_path)]) == 2
+    assert f"{ignored[0].removeprefix('--')}: is for the map of a scene" in capsys.readouterr().err
+
+
 def test_the_quick_suite(tmp_path: Path) -> None:
     verdicts = run_suite(tmp_path / "log.jsonl", quick=True)
     assert [verdict.case.name for verdict in verdicts if verdict.problems] == []

@@ -171,7 +171,7 @@ class Model(Input):
         return self._assembled.nodes(body)
 
     def samples(self, body: str, of: Literal["membrane", "bending"] = "bending") -> NDArray[np.float64]:
-        """Return where the elements of a body sample their strain: forces and stresses are most accurate there.
+        """Return where the elements of a body sample their strain.
 
         Parameters
         ----------

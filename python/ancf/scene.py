@@ -223,7 +223,8 @@ class _File(Input):
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_bytes().decode())
+        # Some editors put a byte order mark first.
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
         problem = f"cannot be read: {error.strerror}"
     except UnicodeDecodeError as error:

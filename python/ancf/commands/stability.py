@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 _LOG = "runs.jsonl"
 
+_OF_A_MAP = ("against", "methods", "steps", "limit")
+
 
 def add(commands: Subparsers) -> None:
     """Add the command to the command line."""
@@ -33,15 +35,12 @@ def add(commands: Subparsers) -> None:
     parser.add_argument("--quick", action="store_true", help="of the suite only what takes a few seconds")
     parser.add_argument(
         "--against",
-        default="E",
         metavar="NAME[=VALUES]",
         help="the stiffness parameter: E (default), thickness, mesh, viscosity, with values if wanted: E=1e5,1e7",
     )
     parser.add_argument("--methods", nargs="+", metavar="NAME", help="default: six of them")
     parser.add_argument("--steps", nargs="+", type=seconds, metavar="SECONDS", help="default: the motion in 10 to 640")
-    parser.add_argument(
-        "--limit", type=seconds, default=60.0, metavar="SECONDS", help="when a run is stopped (default: 60)"
-    )
+    parser.add_argument("--limit", type=seconds, metavar="SECONDS", help="when a run is stopped (default: 60)")
     add_sweep_arguments(parser)
     parser.set_defaults(call=call)
 
@@ -50,6 +49,11 @@ def call(options: argparse.Namespace) -> int:
     """Run the command and return the exit status."""
     if options.suite == (options.scene is not None):
         raise InputError(Mistake(("stability",), "give either a scene or --suite"))
+    for name in _OF_A_MAP if options.suite else ():
+        if getattr(options, name) is not None:
+            raise InputError(Mistake((name,), "is for the map of a scene, not for --suite"))
+    if options.quick and not options.suite:
+        raise InputError(Mistake(("quick",), "is for --suite"))
     return _suite(options) if options.suite else _map(options)
 
 
@@ -59,7 +63,7 @@ def _map(options: argparse.Namespace) -> int:
     from ancf.stability.report import describe  # noqa: PLC0415
 
     scene = load_scene(options.scene)
-    parameter, given, values = options.against.partition("=")
+    parameter, given, values = (options.against or "E").partition("=")
     make_folder(options.output)
     with executor(options) as runner:
         found = scan(
@@ -69,7 +73,7 @@ def _map(options: argparse.Namespace) -> int:
             values=read_values(parameter, values) if given else None,
             methods=options.methods,
             steps=options.steps,
-            limit=options.limit,
+            limit=options.limit or 60.0,
             executor=runner,
             progress=not options.quiet and sys.stderr is not None,
         )

@@ -7,6 +7,7 @@ mod station;
 use nalgebra::Vector3;
 
 use crate::error::InputError;
+use crate::mesh::Grid;
 use crate::model::{BodyId, Model};
 use crate::quadrature::Rule;
 
@@ -36,14 +37,15 @@ impl MaterialPoint {
     pub fn new(model: &Model, body: BodyId, point: [f64; 2], quantity: Quantity) -> Result<Self, InputError> {
         let body = model.body(body);
         let (element, at) = body.grid().locate(point)?;
-        let section = |at, membrane| Section::new(model, body, element, at, membrane);
+        let section = |element, at, membrane| Section::new(model, body, element, at, membrane);
         let around = match quantity {
-            Quantity::ShearForce if !body.plate().element.is_solid() => moment_points(body.grid().element_sides(), at)
-                .map(|(point, derivative)| (section(point, false), derivative))
+            Quantity::ShearForce if !body.plate().element.is_solid() => moment_points(body.grid(), element, at)
+                .into_iter()
+                .map(|(element, point, derivative)| (section(element, point, false), derivative))
                 .collect(),
             _ => Vec::new(),
         };
-        Ok(Self { quantity, section: section(at, quantity.needs_membrane()), around })
+        Ok(Self { quantity, section: section(element, at, quantity.needs_membrane()), around })
     }
 
     /// The components at nodal coordinates `q` and velocities `v`; those that a quantity does not have are zero.
@@ -78,15 +80,45 @@ impl MaterialPoint {
     }
 }
 
-/// The 2 x 2 Gauss points of an element, where moments are most accurate, and the derivatives at `at` along x and y of
-/// the bilinear function that is one at each of them.
-fn moment_points([l, w]: [f64; 2], at: [f64; 2]) -> impl Iterator<Item = ([f64; 2], [f64; 2])> {
+/// Gauss points near a place `at` of an element, with the derivatives there along x and y of a field that is given at
+/// these points: element, place in it, derivatives.
+///
+/// Moments are most accurate at the 2 x 2 Gauss points of an element, and the slopes between these in its middle. So a
+/// slope is taken on the straight line through those of two elements: the slope of one alone is off by as much as shear
+/// changes over half of it.
+fn moment_points(grid: &Grid, element: usize, at: [f64; 2]) -> Vec<(usize, [f64; 2], [f64; 2])> {
+    let sides = grid.element_sides();
     let points: Vec<f64> = Rule::Gauss(2).points().into_iter().map(|(x, _)| x).collect();
     let slope = 1.0 / (points[1] - points[0]);
-    let linear = [0, 1].map(|i| [(points[1] - at[i]) * slope, (at[i] - points[0]) * slope]);
-    let slopes = [-slope, slope];
-    (0..4).map(move |k| {
-        let [i, j] = [k % 2, k / 2];
-        ([points[i], points[j]], [slopes[i] * linear[1][j] / l, linear[0][i] * slopes[j] / w])
-    })
+    let linear = at.map(|at| [(points[1] - at) * slope, (at - points[0]) * slope]);
+    let mut around = Vec::new();
+    for along in [0, 1] {
+        let across = 1 - along;
+        for (element, share) in middles(grid, element, along, at[along]) {
+            for place in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+                let mut derivatives = [0.0; 2];
+                derivatives[along] =
+                    share * [-slope, slope][place[along]] / sides[along] * linear[across][place[across]];
+                around.push((element, place.map(|i| points[i]), derivatives));
+            }
+        }
+    }
+    around
+}
+
+/// An element and its neighbour along x or y that is nearer to the place `at` in it, with their shares in the value there
+/// of a straight line that is given in their middles.
+fn middles(grid: &Grid, element: usize, along: usize, at: f64) -> Vec<(usize, f64)> {
+    let [nx, _] = grid.divisions();
+    let (index, stride) = [(element % nx, 1), (element / nx, nx)][along];
+    let beyond = at - 0.5;
+    let is_first = index == 0;
+    let is_last = index + 1 == grid.divisions()[along];
+    if is_first && is_last {
+        vec![(element, 1.0)]
+    } else if is_first || (beyond > 0.0 && !is_last) {
+        vec![(element, 1.0 - beyond), (element + stride, beyond)]
+    } else {
+        vec![(element, 1.0 + beyond), (element - stride, -beyond)]
+    }
 }
