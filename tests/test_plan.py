@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,9 @@ import pytest
 import ancf
 from ancf import cli
 from ancf.plan import pilots
+from ancf.plan.cost import Costs, Rates
 from ancf.plan.errors import Side, distance, scales
-from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Rung, coarsest
+from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Rung, Stepping, coarsest
 from ancf.plan.planner import LEAST, MOST, PROPORTION
 from ancf.plan.rigid import deflection
 from ancf.plan.shear import shear
@@ -23,9 +25,11 @@ RUBBER = ancf.Material(E=1e6, nu=0.3, density=1000.0)
 WEIGHT = ancf.Gravity(acceleration=(0.0, 0.0, -9.81))
 
 
-@pytest.fixture(autouse=True)
-def _cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+@pytest.fixture(autouse=True, scope="module")
+def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
 
 
 def cantilever(divisions: tuple[int, int] = (3, 3), element: str = "thin36") -> ancf.Model:
@@ -40,7 +44,7 @@ def cantilever(divisions: tuple[int, int] = (3, 3), element: str = "thin36") -> 
         bodies={"plate": plate},
         supports=[ancf.Support(at="edge:x0", clamp=True)],
         loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, -200.0))],
-        probes=[ancf.Probe(name="A", at=(0.5, 0.15)), ancf.Probe(name="B", at=(0.25, 0.0), quantity="curvature")],
+        probes=[ancf.Probe(name="A", at=(0.5, 0.15)), ancf.Probe(name="B", at=(0.25, 0.0), quantity="displacement")],
     )
 
 
@@ -72,6 +76,95 @@ def test_a_free_plate_that_hardly_deforms_is_a_rigid_body() -> None:
     acceleration = 20.0 / (7810.0 * 0.09 * 5e-3) - 9.81
     t = plan.result.t
     assert plan.result.probes["A"].value[:, 2] == pytest.approx(0.5 * acceleration * t**2, abs=1e-9)
+
+
+def test_what_loads_that_change_add_up_to_is_not_rigid() -> None:
+    """Paper flicked for half a period of its slowest oscillation deflects farther than twice as under a steady load."""
+    paper = ancf.Material(E=3e9, nu=0.2, density=800.0)
+    pulse = [(0.0, 1.0), (0.02, 1.0), (0.03, 0.0)]
+    flick = ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.2, 1.0), history=pulse)
+
+    def sheet(divisions: tuple[int, int], element: str) -> ancf.Model:
+        plate = ancf.Rectangle(
+            size=(0.2, 0.1),
+            divisions=divisions,
+            thickness=5e-4,
+            material=paper,
+            element=element,  # type: ignore[arg-type]
+        )
+        probes = [ancf.Probe(name="A", at=(0.2, 0.0))]
+        return ancf.Model(bodies={"sheet": plate}, loads=[flick, WEIGHT], probes=probes)
+
+    plan = ancf.plan(sheet((2, 2), "thin36"), run=ancf.Dynamic(until=0.05, step=5e-4), tol=1e-1, threads=1)
+    times = plan.result.t[1:].tolist()
+    exact = ancf.simulate(sheet((6, 3), "thin48"), until=0.05, method="esdirk", step=5e-4, outputs=times)
+    values = exact.probes["A"].value
+    assert distance([plan.result.probes["A"].value], [values], scales([values])) < 0.1
+
+
+def test_nothing_is_promised_of_a_side_without_a_coarser_neighbour() -> None:
+    """On one element along a sagging sheet `thin48` finds no stable equilibrium, on two by two all elements agree."""
+
+    def sheet(divisions: tuple[int, int], element: str) -> ancf.Model:
+        plate = ancf.Rectangle(
+            size=(0.2, 0.05),
+            divisions=divisions,
+            thickness=1e-4,
+            material=ancf.Material(E=3e9, nu=0.2, density=800.0),
+            element=element,  # type: ignore[arg-type]
+        )
+        supports = [ancf.Support(at="edge:x0", clamp=True)]
+        probes = [ancf.Probe(name="A", at=(0.2, 0.05))]
+        return ancf.Model(bodies={"sheet": plate}, supports=supports, loads=[WEIGHT], probes=probes)
+
+    run = ancf.Static(load_factors=[0.5, 1.0])
+    plan = ancf.plan(sheet((2, 2), "thin36"), run=run, tol=1e-2, threads=1)
+    exact = ancf.solve_static(sheet((24, 3), "thin48"), load_factors=[0.5, 1.0]).probes["A"].value
+    assert distance([plan.result.probes["A"].value], [exact], scales([exact])) < 1e-2
+
+
+def test_a_family_that_locks_is_left_for_another_of_its_element() -> None:
+    """On coarse meshes of a thin cap the membranes that lock change least; they would need 64 x 64 elements."""
+
+    def cap(divisions: tuple[int, int], element: str) -> ancf.Model:
+        body = ancf.Sphere(
+            radius=0.2,
+            longitude=(0.0, 1.2),
+            latitude=(0.2, 1.0),
+            divisions=divisions,
+            thickness=4e-4,
+            material=ancf.Material(E=3e9, nu=0.2, density=800.0),
+            element=element,  # type: ignore[arg-type]
+        )
+        return ancf.Model(
+            bodies={"cap": body},
+            supports=[ancf.Support(at="edge:y0", clamp=True)],
+            loads=[ancf.LineLoad(at="edge:y1", per_length=(0.0, 0.0, 3.0))],
+            probes=[ancf.Probe(name="A", at=(0.6, 1.0))],
+        )
+
+    plan = ancf.plan(cap((2, 2), "thin36"), run=ancf.Static(), tol=1e-2, threads=1)
+    exact = ancf.solve_static(cap((24, 24), "thin48")).probes["A"].value
+    assert plan.converged
+    assert distance([plan.result.probes["A"].value], [exact], scales([exact])) < 1e-2
+    assert plan.settings.rung.elements <= 64
+
+
+def test_threads_are_those_that_take_the_least_predicted_time() -> None:
+    elements = (1, 10_000)
+    common: dict[str, Any] = {"elements": elements, "setup": (1.0, 1.0)}
+    # Implicit steps gain from threads on the large mesh only, explicit ones on neither.
+    rates = Rates(
+        **common, iteration=(1.0, 100.0), iteration_shared=(2.0, 25.0), force=(1.0, 1.0), force_shared=(1.0, 1.0)
+    )
+    costs = Costs(dict.fromkeys((*THIN, CONTINUOUS), rates))
+    few, many = (Rung(THIN[0], ((n, n),)) for n in (1, 100))
+    assert costs.threads(Choice(few)) == 1
+    assert costs.threads(Choice(many)) is None
+    assert costs.threads(Choice(many, Stepping("verlet", rtol=1e-2))) == 1
+    assert Costs(dict.fromkeys(THIN, rates) | {CONTINUOUS: rates}, threads=1).threads(Choice(many)) == 1
+    # An iteration takes 25 s there on all threads.
+    assert costs.steps(many, 2.0, explicit=False) == pytest.approx(1.0 + 2.0 * 3.0 * 25.0)
 
 
 def test_a_soft_plate_is_no_rigid_body() -> None:
@@ -203,36 +296,17 @@ def test_what_does_not_change_cannot_be_wanted() -> None:
         ancf.plan(still, run=ancf.Static())
 
 
-SCENE = """
-[material.steel]
-E = 2.07e11
-nu = 0.3
-density = 7810
-[body.plate]
-shape = "rectangle"
-size = [0.3, 0.3]
-divisions = [4, 4]
-thickness = 0.002
-material = "steel"
-[[load]]
-kind = "force"
-at = [0.1, 0.25]
-force = [5, -3, 20]
-[[probe]]
-name = "A"
-at = [0.3, 0.3]
-[run]
-kind = "dynamic"
-until = 0.3
-step = 1e-3
-"""
-
-
 @pytest.fixture
 def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
+    plate = ancf.Rectangle(size=(0.3, 0.3), divisions=(4, 4), thickness=2e-3, material=STEEL)
+    model = ancf.Model(
+        bodies={"plate": plate},
+        loads=[ancf.Force(at=(0.1, 0.25), force=(5.0, -3.0, 20.0))],
+        probes=[ancf.Probe(name="A", at=(0.3, 0.3))],
+    )
     path = tmp_path / "flight.toml"
-    path.write_text(SCENE)
+    ancf.Scene("flight", model, ancf.Dynamic(until=0.3, step=1e-3)).write(path)
     return path
 
 
@@ -272,36 +346,6 @@ def test_ctrl_c_ends_a_plan(scene: Path, monkeypatch: pytest.MonkeyPatch, comman
     assert not Path("flight-plan").exists()
 
 
-CANTILEVER = """
-[material.steel]
-E = 2.07e11
-nu = 0.3
-density = 7810
-[body.plate]
-shape = "rectangle"
-size = [0.5, 0.15]
-divisions = [4, 4]
-thickness = 0.001
-material = "steel"
-[[support]]
-at = "edge:x0"
-clamp = true
-[[load]]
-kind = "line"
-at = "edge:x1"
-per_length = [0, 0, -200]
-[[probe]]
-name = "A"
-at = [0.5, 0.15]
-[[probe]]
-name = "B"
-at = [0.25, 0.0]
-quantity = "displacement"
-[run]
-kind = "static"
-"""
-
-
 def test_the_mirror_holds_all_that_an_element_has() -> None:
     """The half of a symmetric plate is the whole, also with the twist r_xy of `thin48`."""
     ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
@@ -321,16 +365,13 @@ def test_several_probes_in_statics_are_all_precise(tmp_path: Path, monkeypatch: 
     """A run that is planned, from another folder than that of the scene."""
     (tmp_path / "scenes").mkdir()
     (tmp_path / "elsewhere").mkdir()
-    (tmp_path / "scenes/plate.toml").write_text(CANTILEVER)
+    ancf.Scene("", cantilever(), ancf.Static()).write(tmp_path / "scenes/plate.toml")
     monkeypatch.chdir(tmp_path / "elsewhere")
     assert cli.main(["run", "../scenes/plate.toml", "--tol", "5e-2", "-o", "out", "--quiet"]) == 0
     assert {path.name for path in Path("out").iterdir()} >= {"summary.json", "scene.toml", "plan.json", "plan.png"}
     plan = json.loads(Path("out/plan.json").read_text())
     assert set(plan["scale"]) == {"A", "B"}
-    model = cantilever((24, 8), "thin48")
-    probes = [model.probes[0], ancf.Probe(name="B", at=(0.25, 0.0), quantity="displacement")]
-    fine = ancf.Model(bodies=model.bodies, supports=model.supports, loads=model.loads, probes=probes)
-    exact = ancf.solve_static(fine).probes
+    exact = ancf.solve_static(cantilever((24, 8), "thin48")).probes
     found = ancf.load_scene("out/scene.toml").solve()
     assert isinstance(found, ancf.Result)
     for name in "AB":
@@ -364,7 +405,7 @@ def test_a_tolerance_that_is_not_reached_is_told(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("plate.toml").write_text(CANTILEVER)
+    ancf.Scene("", cantilever(), ancf.Static()).write("plate.toml")
     arguments = ["plate.toml", "--tol", "1e-6", "--budget", "0.5", "--quiet"]
     assert cli.main(["plan", *arguments]) == 4
     assert cli.main(["run", *arguments, "-o", "out"]) == 4
@@ -374,8 +415,9 @@ def test_a_tolerance_that_is_not_reached_is_told(
 
 def test_what_a_scene_without_probes_wants_is_asked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "plate.toml"
-    head, _, tail = CANTILEVER.partition("[[probe]]")
-    path.write_text(head + tail[tail.index("[run]") :])
+    model = cantilever()
+    bare = ancf.Model(bodies=model.bodies, supports=model.supports, loads=model.loads)
+    ancf.Scene("", bare, ancf.Static()).write(path)
     assert cli.main(["run", str(path), "--tol", "0.1", "-o", str(tmp_path / "out")]) == 2
     assert "no probes" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -49,7 +49,7 @@ def add_options(parser: argparse.ArgumentParser, tol: float | None) -> None:
         "--budget",
         type=_number,
         metavar="S",
-        help="plan: seconds it may take; default: 50 times what the scene as written should take, from 20 to 300",
+        help="plan: seconds it may take; default: 9 times what the scene as written should take, from 20 to 300",
     )
 
 

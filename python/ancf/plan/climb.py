@@ -26,6 +26,8 @@ class Climb:
         Error left in `exact`, relative.
     sides : dict of (int, int) to Side
         Differences and rates along body and axis.
+    refined : bool
+        Whether `rung` is finer than one before it: a single difference may be small by accident.
     stalled : int
         Rungs in a row that were no better than the one before.
     ended : bool
@@ -37,8 +39,14 @@ class Climb:
     exact: Values = field(default_factory=list)
     own: float = np.inf
     sides: dict[tuple[int, int], Side] = field(default_factory=dict)
+    refined: bool = False
     stalled: int = 0
     ended: bool = False
+
+    def restart(self, rung: Rung) -> None:
+        """Begin anew with a rung of another family."""
+        self.next, self.rung = rung, None
+        self.exact, self.own, self.sides, self.refined, self.stalled = [], np.inf, {}, False, 0
 
     @property
     def family(self) -> Family:

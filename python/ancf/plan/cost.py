@@ -7,7 +7,7 @@ import os
 import platform
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,20 +17,27 @@ from ancf.loads import Gravity
 from ancf.materials import Material
 from ancf.model import Model
 from ancf.places import EDGES
-from ancf.plan.ladder import CONTINUOUS, THIN, Family, Rung
-from ancf.plan.pilots import Pilot
-from ancf.run import Dynamic, Static
+from ancf.plan.ladder import CONTINUOUS, THIN, Choice, Family, Rung
+from ancf.result import Result
+from ancf.run import Dynamic, Method, Static
 from ancf.scene import Scene
 from ancf.solve import simulate
 from ancf.supports import Support
 
-_SIDES = (1, 3, 8, 20)
+if TYPE_CHECKING:
+    from ancf.plan.pilots import Pilot
+
+_SIDES = (1, 3, 8, 16)
 """Elements along a side of the square plates that are timed."""
-_STEPS = 6
+_STEPS: dict[Method, int] = {"hht": 6, "verlet": 40}
+"""Steps that are timed: explicit ones with their share of the search for the limit of stability, every 20."""
+_REPEATS = 3
 _ITERATIONS, _STEPS_OF_LOAD = 3.0, 2.0
 """Iterations of an implicit step, and steps to a load factor, of scenes that were not run."""
-_FEWEST_THREADED = 65
-"""Elements: fewer are one task, which more threads do not help."""
+_FEWEST_SHARED = 64
+"""Elements of the smallest plate that is timed on all threads: it and smaller ones are one task of the assembly."""
+_GAIN = 0.9
+"""Seconds on all threads, relative to one, below which they are used."""
 
 
 @dataclass(frozen=True)
@@ -43,12 +50,16 @@ class Rates:
         Of the plates that were timed.
     setup, iteration, force : tuple of float
         Seconds for each: to make the system, of one implicit iteration, of one explicit step.
+    iteration_shared, force_shared : tuple of float
+        The same on all threads.
     """
 
     elements: tuple[int, ...]
     setup: tuple[float, ...]
     iteration: tuple[float, ...]
     force: tuple[float, ...]
+    iteration_shared: tuple[float, ...]
+    force_shared: tuple[float, ...]
 
     def at(self, what: str, elements: int) -> float:
         """Return the seconds of one `what` for some elements, between and beyond those timed by powers."""
@@ -66,10 +77,18 @@ class Costs:
     ----------
     rates : dict of Family to Rates
         Of the machine.
+    threads : int or None
+        That runs may use; None for all.
     """
 
-    def __init__(self, rates: dict[Family, Rates]) -> None:
+    def __init__(self, rates: dict[Family, Rates], threads: int | None = None) -> None:
         self._rates = rates
+        self._threads = threads
+
+    def threads(self, choice: Choice) -> int | None:
+        """Return how many threads a choice is run on: 1 unless more are predicted to take clearly less time."""
+        kind = "force" if choice.stepping is not None and choice.stepping.explicit else "iteration"
+        return self._threads if self._shared(kind, choice.rung) else 1
 
     def ratio(self, rung: Rung, pilot: Pilot) -> float:
         """Return the cost of a rung relative to that of a pilot with the same stepping.
@@ -104,22 +123,26 @@ class Costs:
         return self.setup(rung) + steps * work
 
     def _of(self, kind: str, rung: Rung) -> float:
-        rates = self._rates.get(rung.family, self._rates[CONTINUOUS])
-        return rates.at(kind, rung.elements)
+        shared = kind != "setup" and self._shared(kind, rung)
+        return self._family(rung).at(f"{kind}_shared" if shared else kind, rung.elements)
+
+    def _shared(self, kind: str, rung: Rung) -> bool:
+        rates = self._family(rung)
+        return self._threads != 1 and rates.at(f"{kind}_shared", rung.elements) < _GAIN * rates.at(kind, rung.elements)
+
+    def _family(self, rung: Rung) -> Rates:
+        return self._rates.get(rung.family, self._rates[CONTINUOUS])
 
 
-def threads_for(elements: int) -> int | None:
-    """Return how many threads help: 1 for a mesh that is one task, otherwise all (None)."""
-    return 1 if elements < _FEWEST_THREADED else None
-
-
-def calibrated(folder: Path | None = None) -> Costs:
+def calibrated(folder: Path | None = None, threads: int | None = None) -> Costs:
     """Return the costs of this machine, measured in a few seconds unless a file has them.
 
     Parameters
     ----------
     folder : Path, optional
         Where the file is kept; that of the user's caches if left out.
+    threads : int, optional
+        That runs may use; all if left out.
 
     Returns
     -------
@@ -131,7 +154,7 @@ def calibrated(folder: Path | None = None) -> Costs:
     try:
         kept: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
         if kept["machine"] == key:
-            return Costs({Family(e, m): Rates(**_tuples(r)) for e, m, r in kept["rates"]})
+            return Costs({Family(e, m): Rates(**_tuples(r)) for e, m, r in kept["rates"]}, threads)
     except (OSError, ValueError, KeyError, TypeError):
         pass
     rates = {family: _measure(family) for family in (*THIN, CONTINUOUS)}
@@ -142,7 +165,7 @@ def calibrated(folder: Path | None = None) -> Costs:
     except OSError:
         # Without the file they are measured again the next time.
         pass
-    return Costs(rates)
+    return Costs(rates, threads)
 
 
 def as_written(scene: Scene, costs: Costs) -> float | None:
@@ -172,7 +195,7 @@ def _machine() -> list[str]:
 def _measure(family: Family) -> Rates:
     """Time short motions of a clamped plate of rubber under its weight."""
     rubber = Material(E=1e6, nu=0.3, density=1000.0)
-    setup, iteration, force = [], [], []
+    seconds: dict[str, list[float]] = {name: [] for name in Rates.__dataclass_fields__ if name != "elements"}
     for n in _SIDES:
         plate = Rectangle(
             size=(0.3, 0.3),
@@ -187,15 +210,24 @@ def _measure(family: Family) -> Rates:
             supports=[Support(at=EDGES[0], clamp=True)],
             loads=[Gravity(acceleration=(0.0, 0.0, -9.81))],
         )
-        until = 1e-5
-        step = until / _STEPS
-        runs = [simulate(model, until=until, step=step, method=m, every=until, threads=1) for m in ("hht", "verlet")]
-        implicit, explicit = runs
-        setup.append(implicit.seconds["setup"])
-        iteration.append(_work(implicit) / max(implicit.counts["iterations"], 1))
-        force.append(_work(explicit) / _STEPS)
-    return Rates(tuple(n * n for n in _SIDES), tuple(setup), tuple(iteration), tuple(force))
+        for threads, name in ((1, ""), (None, "_shared")):
+            if threads is None and n * n < _FEWEST_SHARED:
+                seconds["iteration_shared"].append(seconds["iteration"][-1])
+                seconds["force_shared"].append(seconds["force"][-1])
+                continue
+            implicit, explicit = ([_motion(model, method, threads) for _ in range(_REPEATS)] for method in _STEPS)
+            if threads == 1:
+                seconds["setup"].append(min(run.seconds["setup"] for run in implicit))
+            iterations = max(implicit[0].counts["iterations"], 1)
+            seconds[f"iteration{name}"].append(min(map(_work, implicit)) / iterations)
+            seconds[f"force{name}"].append(min(map(_work, explicit)) / explicit[0].counts["steps"])
+    return Rates(tuple(n * n for n in _SIDES), **_tuples(seconds))
 
 
-def _work(result: Any) -> float:
+def _motion(model: Model, method: Method, threads: int | None) -> Result:
+    until = 1e-5
+    return simulate(model, until=until, step=until / _STEPS[method], every=until, method=method, threads=threads)
+
+
+def _work(result: Result) -> float:
     return max(float(result.seconds["total"] - result.seconds["setup"]), 1e-7)

@@ -20,6 +20,8 @@ LOOSEST = 0.1
 """Error control with a larger tolerance controls nothing."""
 
 _FINEST_BASE = 16
+_KEPT = ("until", "newton", "tolerance", "max_iterations")
+"""What a motion keeps of the scene when its stepping is chosen."""
 
 
 class Family(NamedTuple):
@@ -88,6 +90,10 @@ class Stepping:
     def explicit(self) -> bool:
         """Whether the highest frequency limits the step."""
         return self.method in ("verlet", "rk")
+
+    def like(self, other: Stepping) -> bool:
+        """Tell whether it is of the same method and control as another one."""
+        return (self.method, self.step is None, self.reuse) == (other.method, other.step is None, other.reuse)
 
     def tighter(self) -> Stepping:
         """Return one of at most a quarter of the error."""
@@ -179,13 +185,11 @@ def apply(scene: Scene, choice: Choice) -> Scene:
     if stepping is not None:
         assert isinstance(run, Dynamic)
         run = Dynamic(
-            until=run.until,
+            **{name: getattr(run, name) for name in _KEPT},
             method=stepping.method,
             step=stepping.step,
             rtol=stepping.rtol,
             reuse=stepping.reuse,
-            newton=run.newton,
-            max_iterations=run.max_iterations,
             **outputs(run),
         )
     return replace(scene, model=made, run=run)

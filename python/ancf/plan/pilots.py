@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ancf.errors import InputError
+from ancf.plan.cost import Costs
 from ancf.plan.ladder import Choice, apply
 from ancf.result import Result
 from ancf.run import Modes
@@ -64,21 +65,28 @@ class Pilots:
     budget : float
         Seconds that all pilots together may take.
     threads : int or None
-        For all runs.
+        That runs may use; None for all.
+    costs : Costs, optional
+        Tells which runs more threads help; all if left out.
     """
 
-    def __init__(self, scene: Scene, want: list[str], budget: float, threads: int | None) -> None:
+    def __init__(
+        self, scene: Scene, want: list[str], budget: float, threads: int | None, costs: Costs | None = None
+    ) -> None:
         self.scene = scene
         self.want = want
         self.threads = threads
-        self._started = time.perf_counter()
+        self._costs = costs
+        # On one thread the processor's time is what pilots cost, whatever else the machine does.
+        self._clock = time.process_time if threads == 1 else time.perf_counter
+        self._started = self._clock()
         self._budget = budget
         self._done: dict[Choice, Pilot] = {}
 
     @property
     def spent(self) -> float:
         """Seconds since the beginning."""
-        return time.perf_counter() - self._started
+        return self._clock() - self._started
 
     @property
     def left(self) -> float:
@@ -129,7 +137,7 @@ class Pilots:
         return pilot
 
     def _run(self, choice: Choice, limit: float) -> Pilot:
-        threads = 1 if choice.rung.elements <= _ONE_TASK else self.threads
+        threads = self._costs.threads(choice) if self._costs else self.threads
         # On one thread the processor's time is what the run costs, whatever else the machine does.
         clock = time.process_time if threads == 1 else time.perf_counter
         start = clock()
@@ -160,5 +168,3 @@ class Pilots:
 
 _SLOW = "slower than others"
 _REPEATS, _REPEATS_FOR = 3, 0.1
-_ONE_TASK = 64
-"""Elements that are evaluated as one task: more threads do not help them."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -80,7 +81,7 @@ class Plan:
     budget : float
         Seconds that the plan was allowed.
     seconds_as_written : float or None
-        What the run of the scene as it was written should have taken; None where that cannot be told.
+        About what the run of the scene as it was written should have taken; None where that cannot be told.
     """
 
     scene: Scene = field(repr=False)
@@ -124,9 +125,20 @@ class Plan:
         lines.append(f"  Errors are relative to the largest change of what is wanted: {wants}. Tolerance {self.tol:g}.")
         chosen = f"{self.rows[self.chosen].seconds:.2g} s (predicted {self.predicted_seconds:.2g} s)"
         lines.append(f"  The plan took {self.seconds:.2g} s of at most {self.budget:.2g} s, the chosen run {chosen}.")
-        if self.seconds_as_written is not None:
-            lines.append(f"  The scene as it was written would take about {self.seconds_as_written:.2g} s.")
+        lines.append(f"  {self._balance()}")
         return lines
+
+    def _balance(self) -> str:
+        """Say after how many runs the plan has paid for itself."""
+        written, run = self.seconds_as_written, self.rows[self.chosen].seconds
+        if written is None:
+            return "What the scene as it was written would take cannot be told before it is run: its steps are free."
+        sentence = f"The scene as it was written would take about {written:.2g} s"
+        if written <= run:
+            return f"{sentence}, less than what the tolerance needs."
+        # The run of the choice was one of the pilots.
+        runs = max(1, math.ceil((self.seconds - run) / (written - run)))
+        return f"{sentence}: the plan has paid for itself after {runs} run{'' if runs == 1 else 's'}."
 
     def document(self) -> dict[str, Any]:
         """Return the numbers of the plan as plain values, as in plan.json."""

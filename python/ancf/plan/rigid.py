@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ancf import _core
 from ancf.model import Model
+from ancf.plan.errors import distance, scales
+from ancf.plan.ladder import RIGID, Choice, Family, Rung, Stepping, apply
+from ancf.plan.pilots import Pilot, Pilots
 from ancf.result import Result
+from ancf.run import Dynamic
+from ancf.solve import solve
 
 FloatArray = NDArray[np.float64]
 
@@ -19,6 +25,10 @@ _DYNAMIC = 2.0
 """A load that comes suddenly deflects a structure up to twice as far as one that comes slowly."""
 _MOST_COORDINATES = 1500
 _HELD = 1e-9
+RIGID_SHARE = 0.7
+"""Part of the tolerance below which the estimated deflection of a rigid body is no matter."""
+_SURELY_RIGID, _STEPS = 0.02, 60
+"""Part of the tolerance up to which the estimate is believed, and the steps of the motion that checks others."""
 
 
 def deflection(model: Model, rigid: Result, limits: Sequence[float] | None = None) -> list[float]:
@@ -68,6 +78,38 @@ def deflection(model: Model, rigid: Result, limits: Sequence[float] | None = Non
         if limits is not None and (worst > np.asarray(limits)).any():
             break
     return [float(x) if np.isfinite(x) else np.inf for x in worst]
+
+
+def as_rigid(
+    pilots: Pilots, base: tuple[tuple[int, int], ...], family: Family, tol: float
+) -> tuple[Pilot | None, list[float]]:
+    """Run the scene with rigid bodies, and estimate what deflection changes of the wanted quantities, relative."""
+    curved = any(body.shape != "rectangle" for body in pilots.scene.model.bodies.values())
+    divisions = tuple((4 * x, 4 * y) for x, y in base) if curved else base
+    rtol = min(1e-3, 1e-2 * tol)
+    pilot = pilots.run(Choice(Rung(RIGID, divisions), Stepping("rigid", rtol=rtol)), pilots.left / 4)
+    if not pilot.ok or pilot.result is None:
+        return None, []
+    scale = scales(pilot.values)
+    if min(scale) == 0.0:
+        return None, []
+    # Deflections need more than the corners.
+    finer = Rung(family, tuple((max(x, 2), max(y, 2)) for x, y in divisions))
+    assert isinstance(pilots.scene.run, Dynamic)
+    again = apply(pilots.scene, replace(pilot.choice, rung=replace(finer, family=RIGID)))
+    assert isinstance(again.run, Dynamic)
+    result = solve(again.model, again.run, threads=1, throw=False)
+    elastic = apply(pilots.scene, Choice(finer)).model
+    names = [probe.name for probe in elastic.probes]
+    limits = [RIGID_SHARE * tol * dict(zip(pilots.want, scale, strict=True)).get(name, np.inf) for name in names]
+    bent = dict(zip(names, deflection(elastic, result, limits), strict=True))
+    errors = [bent[name] / size for name, size in zip(pilots.want, scale, strict=True)]
+    if _SURELY_RIGID * tol < max(errors) <= RIGID_SHARE * tol:
+        # Loads that change as the body oscillates add up: see what it does.
+        until = pilots.scene.run.until
+        moved = pilots.run(Choice(finer, Stepping("esdirk", step=until / _STEPS)), pilots.left / 4)
+        errors.append(distance(moved.values, pilot.values, scale) if moved.ok else np.inf)
+    return pilot, errors
 
 
 def _dense(entries: tuple[NDArray[np.uint64], NDArray[np.uint64], FloatArray], n: int) -> FloatArray:

@@ -12,7 +12,7 @@ from ancf.plan.ladder import LOOSEST, Choice, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.run import Dynamic, Method
 
-FIXED: tuple[Method, ...] = ("hht", "generalized_alpha", "energy_momentum", "esdirk")
+FIXED: tuple[Method, ...] = ("hht", "generalized_alpha", "tr_bdf2", "energy_momentum", "esdirk")
 CONTROLLED: tuple[Method, ...] = ("esdirk", "verlet", "hht", "rk", "tr_bdf2")
 
 SHARE = 0.25

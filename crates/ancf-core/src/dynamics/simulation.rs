@@ -5,7 +5,7 @@ use crate::observe::Observer;
 use crate::report::Counts;
 
 use super::Options;
-use super::checkpoint::{Checkpoint, Tangent};
+use super::checkpoint::{Checkpoint, Memory};
 use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
 use super::fingerprint::Fingerprint;
@@ -33,8 +33,9 @@ pub(super) struct Simulation<'a> {
     error: Vec<f64>,
     /// What is allowed of the error of each coordinate: finite for positions only.
     allowed: Vec<f64>,
-    /// The tangent that is kept from the last accepted step, when checkpoints are wanted.
-    tangent: Option<Tangent>,
+    /// What belongs to the state `now` in a checkpoint, when checkpoints are wanted: a step that is being tried has
+    /// changed the present ones already.
+    accepted: (Controller, Memory, Counts),
     /// Steps of this run and, after a checkpoint, all counts of the run before.
     counts: Counts,
     /// Evaluations and factorisations of the system before this run.
@@ -60,7 +61,7 @@ impl<'a> Simulation<'a> {
             next: Instantaneous::default(),
             error: vec![0.0; n],
             allowed,
-            tangent: None,
+            accepted: (Controller::new(0.0), Memory::default(), Counts::default()),
             counts: Counts::default(),
             earlier,
         }
@@ -98,6 +99,7 @@ impl<'a> Simulation<'a> {
             Steps::Controlled(tolerances) => tolerances.first_step.unwrap_or_else(|| self.first_step(tolerances)),
         });
         self.heed_limit()?;
+        self.accepted = (self.controller, Memory::default(), self.counts());
         if self.options.outputs.first() == Some(&0.0) {
             observer.state(self.now.output(&mut self.equations));
         }
@@ -154,7 +156,7 @@ impl<'a> Simulation<'a> {
             }
             std::mem::swap(&mut self.now, &mut self.next);
             if observer.wants_checkpoints() {
-                self.tangent = Tangent::of(&self.equations);
+                self.accepted = (self.controller, Memory::of(&self.equations), self.counts());
             }
             observer.reached(self.now.t);
             observer.checkpoint(&|states| self.checkpoint().to_bytes(states), false);
@@ -265,24 +267,23 @@ impl<'a> Simulation<'a> {
 
     /// What is needed to go on from the last accepted step.
     fn checkpoint(&self) -> Checkpoint {
+        let (controller, memory, counts) = self.accepted.clone();
         Checkpoint {
             method: self.options.method.name().to_owned(),
             fingerprint: Fingerprint::of(self.equations.system.model(), self.options),
             now: self.now.clone(),
-            controller: self.controller,
-            tangent: self.tangent.clone(),
-            counts: self.counts(),
+            controller,
+            memory,
+            counts,
         }
     }
 
     fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), Failure> {
-        let Checkpoint { now, controller, tangent, counts, .. } = checkpoint;
+        let Checkpoint { now, controller, memory, counts, .. } = checkpoint;
+        memory.restore(&mut self.equations)?;
         self.next = now.clone();
         (self.now, self.controller, self.counts) = (now, controller, counts);
-        if let Some(tangent) = &tangent {
-            tangent.restore(&mut self.equations)?;
-        }
-        self.tangent = tangent;
+        self.accepted = (controller, memory, counts);
         Ok(())
     }
 }

@@ -1,0 +1,157 @@
+"""The answer: the choice, checked in time, with its reasons and all that was tried."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from ancf.plan.errors import distance, scales
+from ancf.plan.ladder import RIGID, apply
+from ancf.plan.pilots import Pilot, Pilots
+from ancf.plan.report import Plan, Row
+from ancf.plan.search import Search
+from ancf.plan.shear import told
+from ancf.plan.timing import SHARE
+from ancf.result import Result
+from ancf.scene import Scene
+
+_CHECKS = 3
+_ROUNDING = 1e-13
+"""Relative differences below it are none."""
+
+
+def check_time(search: Search, chosen: Pilot, scale: Sequence[float], allowed: float) -> tuple[Pilot, float]:
+    """Repeat the choice with tighter steps until they no longer matter; return it with its error in time, relative.
+
+    What longer steps add shows in the distance to what is known best. What that lacks itself shows in the steps that
+    were found on the coarse mesh: they are compared with tighter ones.
+    """
+    stepping = chosen.choice.stepping
+    # Where it cannot be checked, what was found on a coarse mesh must do.
+    error = max((t.error for t in search.timings if t.stepping == stepping), default=SHARE * search.tol)
+    for _ in range(_CHECKS):
+        stepping = chosen.choice.stepping
+        if stepping is None:
+            return chosen, 0.0
+        found = search.found(stepping)
+        known = search.pilots.run(replace(chosen.choice, stepping=found))
+        tight = search.pilots.run(replace(chosen.choice, stepping=found.tighter()))
+        if not known.ok or not tight.ok:
+            break
+        change = distance(tight.values, known.values, scale)
+        # The limit of stability may set the steps of both: then tighter control tells nothing.
+        error = max(change, error) if change < _ROUNDING else change
+        if error <= max(allowed, SHARE * search.tol):
+            break
+        chosen = tight
+    return chosen, error
+
+
+def of_search(
+    search: Search,
+    chosen: Pilot,
+    in_space: float,
+    in_time: float,
+    scale: Sequence[float],
+) -> Plan:
+    """Return the plan that follows from a search."""
+    pilots, tol, finest = search.pilots, search.tol, search.best
+    errors = search.observed()
+    converged = in_space + in_time <= tol
+    reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.2g}."]
+    if chosen.choice.rung == finest:
+        reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
+    if chosen.choice.stepping is not None:
+        reasons.append(
+            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; it {_told(in_time)}."
+        )
+    axes = "xy"
+    names = list(pilots.scene.model.bodies)
+    for (body, axis), side in search.sides.items():
+        where = f"{names[body]}, {axes[axis]}" if len(names) > 1 else axes[axis]
+        rate = "unknown" if side.rate is None else f"{side.rate:.1f}"
+        reasons.append(f"Refining {finest} along {where} changed {side.difference:.1g}, rate {rate}.")
+    if not converged:
+        slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
+        why = (
+            "differences hardly shrink as the mesh is refined, as at a singular point or where the motion is chaotic"
+            if slow
+            else "the budget (--budget) or the largest mesh was reached"
+        )
+        reasons.append(
+            f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.2g}."
+        )
+    threads = search.costs.threads(chosen.choice)
+    if pilots.threads != 1:
+        reasons.append(f"{'One thread is' if threads == 1 else 'More threads are'} predicted to be the fastest.")
+    reasons += told(pilots.scene.model, tol)
+    rows = [
+        Row(
+            str(p.choice),
+            search.predicted.get(p.choice),
+            p.seconds,
+            search.guessed.get(p.choice),
+            errors.get(p.choice),
+            p.outcome,
+        )
+        for p in pilots.done
+    ]
+    index = next(i for i, p in enumerate(pilots.done) if p.choice == chosen.choice)
+    return Plan(
+        scene=apply(pilots.scene, chosen.choice),
+        result=_result(chosen),
+        settings=chosen.choice,
+        tol=tol,
+        scale=dict(zip(pilots.want, scale, strict=True)),
+        error=in_space,
+        error_in_time=in_time,
+        converged=converged,
+        reasons=reasons,
+        rows=rows,
+        chosen=index,
+        seconds=pilots.spent,
+        predicted_seconds=search.predicted.get(chosen.choice, chosen.seconds),
+        threads=threads,
+    )
+
+
+def of_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: float) -> Plan:
+    """Return the plan of bodies that hardly deform, by `bent`."""
+    reason = (
+        f"No body deforms to speak of: loads and inertia change what is wanted by about {bent:.1g} of its change, "
+        f"so six rigid motions do."
+    )
+    assert pilot.choice.stepping is not None
+    tight = pilots.run(replace(pilot.choice, stepping=pilot.choice.stepping.tighter()))
+    in_time = distance(tight.values, pilot.values, scales(pilot.values)) if tight.ok else SHARE * tol
+    told_time = f"{pilot.choice.stepping} {_told(in_time)}."
+    errors = {p.choice: bent for p in pilots.done if p.ok and p.choice.rung.family == RIGID}
+    rows = [Row(str(p.choice), None, p.seconds, None, errors.get(p.choice), p.outcome) for p in pilots.done]
+    scale = dict(zip(pilots.want, scales(pilot.values), strict=True))
+    chosen = apply(scene, pilot.choice)
+    return Plan(
+        scene=chosen,
+        result=_result(pilot),
+        settings=pilot.choice,
+        tol=tol,
+        scale=scale,
+        error=bent,
+        error_in_time=in_time,
+        converged=bent + in_time <= tol,
+        reasons=[reason, told_time],
+        rows=rows,
+        chosen=rows.index(next(row for row in rows if row.settings == str(pilot.choice))),
+        seconds=pilots.spent,
+        predicted_seconds=pilot.seconds,
+        threads=1,
+    )
+
+
+def _told(in_time: float) -> str:
+    """Say what is known of an error in time."""
+    return "has an error below rounding" if in_time < _ROUNDING else f"has an error of {in_time:.2g}"
+
+
+def _result(pilot: Pilot) -> Result:
+    assert pilot.result is not None
+    return pilot.result
