@@ -8,7 +8,7 @@ use crate::lanes::{Aligned, Lanes, MAX_LANES, Transpose, Vector, arch};
 use crate::material::Damping;
 use crate::strain::packed;
 
-use super::classes::Classes;
+use super::classes::classes;
 use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
 use super::corners::{combine_all, distribute_all};
 use super::kernel::{Batch, Flow, Tangent, Totals, point_constants};
@@ -119,12 +119,7 @@ pub(crate) struct Block<const N: usize> {
 impl<const N: usize> Block<N> {
     /// Elements on the nodal vectors `vectors`, whose reference state is the nodal coordinates `reference`.
     pub fn new(tables: Tables<N>, vectors: Vec<[u32; N]>, reference: &[f64], section: Section) -> Self {
-        let mut classes = Classes::new(&tables, section.thickness);
-        let class_of = vectors
-            .iter()
-            .map(|element| classes.find(Constants::new(&tables, &coordinates(element, reference), section)))
-            .collect();
-        let classes = classes.finish();
+        let (classes, class_of) = classes(&tables, &vectors, reference, section);
         let couplings = couplings(&tables, &classes);
         let damping = section.material.damping();
         Self { arch: arch(vectors.len()), tables, couplings, classes, class_of, vectors, damping }
@@ -139,7 +134,7 @@ impl<const N: usize> Block<N> {
 }
 
 /// The nodal vectors of an element.
-fn coordinates<const N: usize>(vectors: &[u32; N], q: &[f64]) -> [[f64; 3]; N] {
+pub(super) fn coordinates<const N: usize>(vectors: &[u32; N], q: &[f64]) -> [[f64; 3]; N] {
     vectors.map(|v| [q[3 * v as usize], q[3 * v as usize + 1], q[3 * v as usize + 2]])
 }
 
