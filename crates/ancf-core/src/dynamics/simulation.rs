@@ -18,6 +18,10 @@ use super::state::Instantaneous;
 const LIMIT_EVERY: usize = 20;
 /// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates.
 const STABLE: f64 = 0.9;
+/// Change of the squared highest frequency in an iteration at which it is found: for a step that the limit may refuse, and
+/// where the share above covers what is missing.
+const PRECISE: f64 = 1e-6;
+const ROUGH: f64 = 1e-2;
 
 /// A motion while it is computed.
 pub(super) struct Simulation<'a> {
@@ -245,10 +249,10 @@ impl<'a> Simulation<'a> {
     /// # Source
     ///
     /// Belytschko, Liu and Moran, Nonlinear Finite Elements for Continua and Structures (2000), (6.2.21) for damping.
-    fn limit(&mut self) -> Option<f64> {
+    fn limit(&mut self, precision: f64) -> Option<f64> {
         let limit = self.integrator.explicit_limit()?;
         let Equations { system, inertia, .. } = &mut self.equations;
-        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q);
+        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q, precision);
         let damping = system.model().bodies().iter().map(|body| body.plate().material.damping());
         let ratio = damping.map(|d| 0.5 * (d.viscosity * omega + d.mass / omega)).fold(0.0, f64::max);
         Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
@@ -262,11 +266,13 @@ impl<'a> Simulation<'a> {
         match self.options.steps {
             Steps::Fixed { force: true, .. } => {}
             Steps::Fixed { step, .. } => {
-                if let Some(limit) = self.limit().filter(|limit| step > *limit) {
+                if let Some(limit) = self.limit(PRECISE).filter(|limit| step > *limit) {
                     return Err(Failure::StepAboveLimit { t: self.now.t, step, limit });
                 }
             }
-            Steps::Controlled(_) => self.controller.limit = self.limit().map_or(f64::INFINITY, |limit| STABLE * limit),
+            Steps::Controlled(_) => {
+                self.controller.limit = self.limit(ROUGH).map_or(f64::INFINITY, |limit| STABLE * limit);
+            }
         }
         Ok(())
     }
