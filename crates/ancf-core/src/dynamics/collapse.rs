@@ -14,15 +14,15 @@ const MIDDLE: [f64; 2] = [0.5, 0.5];
 /// The middles of all elements of a model, where collapse is looked for: gradients at nodes fold and unfold in soft plates
 /// whose elements keep their areas, as at a pinned corner.
 pub(super) struct Middles {
-    /// Of each body: `N_x` and `N_y` at the middle of each of its elements.
-    tables: Vec<[Vec<f64>; 2]>,
+    /// Of each body, for each nodal vector of an element: `N_x` and `N_y` at its middle.
+    tables: Vec<Vec<[f64; 2]>>,
 }
 
 impl Middles {
     pub fn new(model: &Model) -> Self {
         let tables = |body: &Body| {
             let [_, x, y, ..] = body.shape(0, MIDDLE).1;
-            [x, y]
+            x.into_iter().zip(y).map(|(x, y)| [x, y]).collect()
         };
         Self { tables: model.bodies().iter().map(tables).collect() }
     }
@@ -36,14 +36,13 @@ impl Middles {
         for (body, tables) in model.bodies().iter().zip(&self.tables) {
             for element in 0..body.grid().elements() {
                 let tangents = |q: &[f64]| {
-                    let mut tangents = [Vector3::zeros(); 2];
-                    for (index, vector) in body.element_vectors(element).enumerate() {
+                    let [mut x, mut y] = [Vector3::zeros(); 2];
+                    for (vector, [n_x, n_y]) in body.element_vectors(element).zip(tables) {
                         let vector = Vector3::from_column_slice(&q[3 * vector..][..3]);
-                        for (tangent, table) in tangents.iter_mut().zip(tables) {
-                            *tangent += table[index] * vector;
-                        }
+                        x += *n_x * vector;
+                        y += *n_y * vector;
                     }
-                    tangents
+                    [x, y]
                 };
                 if is_turned_inside_out(tangents(from), tangents(to)) {
                     let [first, _, last, _] = body.grid().cell(element).map(|node| body.grid().parameters(node));
