@@ -223,7 +223,9 @@ class Ascent:
     def _confirmed(self, rung: Rung) -> bool:
         """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing."""
         lead = self.search.lead
-        order = sorted(self.search.families, key=lambda family: family.element == rung.family.element)
+        refined = {climb.family for climb in self.search.climbs}
+        # Of the other element the family that is refined is the better one.
+        order = sorted(self.search.families, key=lambda f: (f.element == rung.family.element, f not in refined))
         for family in order:
             if family == rung.family:
                 continue
