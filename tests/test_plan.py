@@ -19,6 +19,7 @@ from ancf.plan.planner import LEAST, MOST, PROPORTION
 from ancf.plan.rigid import deflection
 from ancf.plan.shear import shear
 from ancf.plan.symmetry import halved
+from ancf.solve import solve
 
 STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
 RUBBER = ancf.Material(E=1e6, nu=0.3, density=1000.0)
@@ -344,6 +345,69 @@ def test_ctrl_c_ends_a_plan(scene: Path, monkeypatch: pytest.MonkeyPatch, comman
     monkeypatch.setattr(pilots, "solve", interrupt)
     assert cli.main([command[0], str(scene), *command[1:]]) == 130
     assert not Path("flight-plan").exists()
+
+
+@pytest.mark.parametrize("command", [["plan"], ["run", "-o", "plate-plan"]])
+def test_an_interrupted_plan_leaves_what_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: list[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ancf.Scene("", cantilever(), ancf.Static()).write("plate.toml")
+    runs = iter(range(20))
+
+    def interrupt(*arguments: Any, **options: Any) -> ancf.Result:
+        if next(runs) == 18:
+            raise KeyboardInterrupt
+        return solve(*arguments, **options)
+
+    monkeypatch.setattr(pilots, "solve", interrupt)
+    assert cli.main([command[0], "plate.toml", "--tol", "1e-3", "--threads", "1", *command[1:]]) == 130
+    assert "the plan was interrupted; plate-plan has the best found" in capsys.readouterr().err
+    # Nothing is run after it.
+    assert next(runs) == 19
+    told = json.loads(Path("plate-plan/plan.json").read_text())
+    found = ancf.load_scene("plate-plan/scene.toml").solve()
+    assert isinstance(found, ancf.Result)
+    values = [found.probes[name].value for name in "AB"]
+    exact = [ancf.solve_static(cantilever((24, 8), "thin48")).probes[name].value for name in "AB"]
+    assert distance(values, exact, scales(exact)) < told["error"]
+
+
+def test_a_pilot_that_slides_and_jumps_ends_when_its_time_is_up() -> None:
+    """A soft vault that buckles under its weight: it would take minutes on this mesh."""
+    vault = ancf.Cylinder(
+        radius=0.3,
+        angle=(0.0, 2.4),
+        length=(0.0, 0.6),
+        divisions=(4, 4),
+        thickness=3e-3,
+        material=ancf.Material(E=1e6, nu=0.45, density=1100.0),
+    )
+    ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
+    probes = [ancf.Probe(name="A", at=(1.2, 0.0))]
+    model = ancf.Model(bodies={"vault": vault}, supports=ends, loads=[WEIGHT], probes=probes)
+    scene = ancf.Scene("", model, ancf.Static(load_factors=[0.25, 0.5, 1.0]))
+    pilot = pilots.Pilots(scene, ["A"], np.inf, 1).run(Choice(Rung(CONTINUOUS, ((32, 16),))), 0.5)
+    assert pilot.outcome == "slower than others"
+    # A plan, too, tells what it knows when its time is up.
+    plan = ancf.plan(model, run=ancf.Static(load_factors=[0.25, 0.5, 1.0]), tol=1e-3, budget=0.5, threads=1)
+    assert not plan.converged
+    assert "--budget" in " ".join(plan.reasons)
+
+
+def test_one_element_between_clamped_edges_does_not_move_and_is_left_out() -> None:
+    ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
+    # Without symmetry, of which half an element would be free.
+    push = [ancf.LineLoad(at="edge:y1", per_length=(0.0, 0.3, 2.0))]
+    sheets = [blown((0.4, 0.3), divisions, ends) for divisions in ((4, 4), (16, 12))]
+    models = [
+        ancf.Model(bodies=m.bodies, supports=ends, loads=push, probes=[ancf.Probe(name="A", at=(0.3, 0.3))])
+        for m in sheets
+    ]
+    plan = ancf.plan(models[0], run=ancf.Static(), tol=3e-2)
+    exact = ancf.solve_static(models[1]).probes["A"].value
+    assert plan.converged
+    assert distance([plan.result.probes["A"].value], [exact], scales([exact])) < 3e-2
 
 
 def test_the_mirror_holds_all_that_an_element_has() -> None:
