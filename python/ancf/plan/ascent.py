@@ -221,20 +221,24 @@ class Ascent:
         climb.own = max(climb.own - (1 - _TRUST) * removed, _TRUST * climb.own)
 
     def _confirmed(self, rung: Rung) -> bool:
-        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing."""
+        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing.
+
+        One of its families must agree, the one that is refined before those that may lock or be weak here.
+        """
         lead = self.search.lead
+        scale = scales(lead.exact)
         refined = {climb.family for climb in self.search.climbs}
-        # Of the other element the family that is refined is the better one.
         order = sorted(self.search.families, key=lambda f: (f.element == rung.family.element, f not in refined))
+        agreed, nearest = max(_AGREED * self.search.tol, 3 * lead.own), np.inf
         for family in order:
-            if family == rung.family:
-                continue
-            pilot = self.search.run(replace(rung, family=family), 6 * self._seconds(rung))
-            if pilot.ok:
-                other = distance(pilot.values, lead.exact, scales(lead.exact))
-                if other > max(_AGREED * self.search.tol, 3 * lead.own):
-                    lead.own = max(lead.own, other / 2)
+            if nearest <= agreed or (nearest < np.inf and family.element == rung.family.element):
                 break
+            if family != rung.family:
+                pilot = self.search.run(replace(rung, family=family), 6 * self._seconds(rung))
+                if pilot.ok:
+                    nearest = min(nearest, distance(pilot.values, lead.exact, scale))
+        if agreed < nearest < np.inf:
+            lead.own = max(lead.own, nearest / 2)
         return lead.own <= BEST * self.search.tol
 
     def _seconds(self, rung: Rung) -> float:
