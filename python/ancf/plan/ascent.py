@@ -13,6 +13,7 @@ from ancf.plan.errors import RATES, Side, distance, scales
 from ancf.plan.ladder import Choice, Family, Rung
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
+from ancf.plan.timing import SHARE
 
 BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
@@ -92,7 +93,9 @@ class Ascent:
             or climb.stalled > _PATIENCE
         ):
             climb.ended = True
-        elif self._run(rung).ok:
+            return
+        self._compare_steps(climb)
+        if self._run(rung).ok:
             before = climb.own
             self._learn(climb)
             climb.stalled = climb.stalled + 1 if climb.own > before * 2.0**-_STALLED else 0
@@ -111,17 +114,34 @@ class Ascent:
             stepping = pilot.choice.stepping
             if pilot.ok or stepping is None or self.search.pilots.left <= 0:
                 break
-            for index, timing in enumerate(self.search.timings):
-                if timing.stepping == stepping:
-                    shorter = replace(stepping, reuse=False) if stepping.reuse else stepping.tighter()
-                    self.search.allowed.insert(0, shorter)
-                    # Its cost is known from the pilot with the longer steps.
-                    again = self.search.pilots.run(Choice(timing.pilot.choice.rung, shorter))
-                    self.search.timings[index] = replace(
-                        timing, stepping=shorter, pilot=again if again.ok else timing.pilot
-                    )
+            self.search.shorten(stepping, replace(stepping, reuse=False) if stepping.reuse else stepping.tighter())
             pilot = self.search.run(rung)
         return pilot
+
+    def _compare_steps(self, climb: Climb) -> None:
+        """Before a rung is run with another stepping than the last one, see that the two agree there, or shorten it.
+
+        Steps that are short enough on the coarse mesh, on which they were found, may not be on a finer one, and then
+        the error in time would be taken for one in space.
+        """
+        last = climb.rung
+        for _ in range(_SHORTER):
+            stepping = self.search.stepping(climb.next)
+            if last is None or stepping is None:
+                return
+            known = [
+                self.search.pilots.known(Choice(last, other)) for other in self.search.allowed if other != stepping
+            ]
+            others = [pilot.values for pilot in known if pilot is not None]
+            if not others:
+                return
+            own = self.search.pilots.run(Choice(last, stepping), _AFFORDED * self.search.pilots.left)
+            if not own.ok:
+                return
+            scale = scales(own.values)
+            if min(distance(own.values, values, scale) for values in others) <= 2 * SHARE * self.search.tol:
+                return
+            self.search.shorten(stepping, stepping.tighter())
 
     def _reconsider(self, climb: Climb) -> None:
         """Go on with another family of the element where it is much nearer to what another element tells.
