@@ -45,7 +45,7 @@ def rivals(repeats: int) -> list[Rival]:
     for _ in range(repeats):
         for reduced, n, step in random.sample(runs, len(runs)):
             print(".", end="", file=sys.stderr, flush=True)
-            found[reduced, n, step].append(theirs("pendulum", n, step, {"modified": True, "reduced": reduced}))
+            found[reduced, n, step].append(theirs("pendulum", n, {"step": step, "modified": True, "reduced": reduced}))
     print(file=sys.stderr)
     return [
         Rival(

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_args
 
@@ -88,45 +89,22 @@ def test_a_turned_corner_carries_its_gradient() -> None:
     np.testing.assert_allclose(result.q[-1][3:6], [np.cos(0.5), np.sin(0.5), 0.0], atol=1e-14)
 
 
-SCENE = """
-[material.rubber]
-E = 1e5
-nu = 0.3
-density = 7810
-
-[body.plate]
-shape = "rectangle"
-size = [0.3, 0.3]
-divisions = [4, 4]
-thickness = 0.01
-material = "rubber"
-
-[[support]]
-at = "corner:x0y0"
-fix = ["r"]
-
-[[load]]
-kind = "gravity"
-acceleration = [0, 0, -9.81]
-
-[run]
-kind = "dynamic"
-until = 2.0
-step = 5e-4
-reuse = true
-every = 0.01
-"""
-
-
 def run(scene: Path, folder: Path, *arguments: str | Path) -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "ancf", "run", scene, "-o", folder, "--quiet", *arguments]
     return subprocess.Popen(command, stderr=subprocess.DEVNULL)
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
-def test_a_stopped_run_goes_on_to_the_same_bits(tmp_path: Path, number: signal.Signals) -> None:
-    scene = tmp_path / "scene.toml"
-    scene.write_text(SCENE)
+def test_a_stopped_run_goes_on_to_the_same_bits(
+    edit: Callable[..., Path], tmp_path: Path, number: signal.Signals
+) -> None:
+    scene = edit(
+        "pendulum.toml",
+        ("E = 1e5", "E = 1e6"),
+        ("divisions = [2, 2]", "divisions = [4, 4]"),
+        ("until = 0.05", "until = 2.0"),
+        ("step = 5e-3\noutputs = [0.025, 0.05]", "step = 5e-4\nevery = 0.01"),
+    )
     whole, stopped, checkpoint = tmp_path / "whole", tmp_path / "stopped", tmp_path / "checkpoint"
     assert run(scene, whole).wait() == 0
     process = run(scene, stopped, "--checkpoint", checkpoint)

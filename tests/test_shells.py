@@ -10,6 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipk
 
 import ancf
 
@@ -19,7 +21,7 @@ CASES = {
     "cantilever_shear": [("end", 2, 6.698, 0.005), ("end", 0, -3.286, 0.005)],
     "cantilever_moment": [("end", 0, -12.0, 0.005)],
     "slit_annulus": [("A", 2, 13.891, 0.005), ("B", 2, 17.528, 0.005)],
-    "pinched_hemisphere": [("outwards", 0, 4.067, 0.005), ("inwards", 1, -8.178, 0.009)],
+    "pinched_hemisphere": [("outwards", 0, 4.067, 0.005), ("inwards", 1, -8.178, 0.005)],
     "pulled_cylinder": [("A", 1, 2.768, 0.009), ("B", 0, -4.551, 0.005), ("C", 0, -3.269, 0.013)],
 }
 
@@ -41,6 +43,27 @@ def test_the_pulled_cylinder_tells_that_it_snaps() -> None:
     result = ancf.load_scene(SCENES / "pulled_cylinder.toml").solve()
     assert isinstance(result, ancf.Result)
     np.testing.assert_allclose(result.jumps, [0.4967], atol=0.005)
+
+
+@pytest.mark.parametrize("ratio", [1.5, 4.0])
+def test_a_leaning_column_is_followed_past_its_critical_load(ratio: float) -> None:
+    """From its first, stiff direction into bending: the elastica, 2 k / K(k) with K(k) = pi / 2 sqrt(P / P_c)."""
+    length, width, thickness, young = 1.0, 0.1, 0.01, 2.1e11
+    critical = np.pi**2 / 4 * young * width * thickness**3 / 12 / length**2
+    strip = ancf.Rectangle(
+        size=(length, width), divisions=(16, 1), thickness=thickness, material=ancf.Material(E=young, nu=0.0)
+    )
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(-ratio * critical / width, 0.0, 1e-3 * critical / width))],
+        probes=[ancf.Probe(name="tip", at=(length, width / 2), quantity="displacement")],
+    )
+    result = ancf.solve_static(model)
+    k = brentq(lambda k: ellipk(k**2) - np.pi / 2 * np.sqrt(ratio), 0.01, 0.999999)
+    np.testing.assert_allclose(result.probes["tip"].value[-1, 2], 2 * k / ellipk(k**2) * length, rtol=2e-3)
+    assert result.counts["steps"] < 20
+    assert len(result.jumps) == 0
 
 
 def test_all_scenes_are_valid() -> None:

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use ancf_core::Material;
-use ancf_core::element::{At, Kind, Membrane, Outcome, Want};
+use ancf_core::element::{At, Kind, Membrane, Want};
 use ancf_core::mesh::{Surface, SurfacePoint};
 use ancf_core::model::{Model, Plate};
 use pulp::{Arch, Simd, WithSimd};
@@ -94,10 +94,14 @@ fn row(element: Kind, membrane: Option<Membrane>, n: usize, curved: bool) {
     let q: Vec<f64> = model.reference().iter().enumerate().map(|(i, x)| x + 1e-3 * (0.37 * i as f64).sin()).collect();
     let tangent = Want { mass: 1.0, stiffness: 1.0, previous: None };
     let operations = elements.operations();
-    let mut outcome = Outcome::default();
+    let all: Vec<u32> = (0..(n * n) as u32).collect();
     let mut cells = String::new();
     for (want, operations) in [(None, operations.force), (Some(tangent), operations.tangent)] {
-        let mut work = || elements.evaluate(At::rest(black_box(&q)), want, &mut outcome);
+        let mut work = || {
+            elements.evaluate(&all, At::rest(black_box(&q)), want, &mut |portion| {
+                black_box(&portion);
+            });
+        };
         let once = seconds(1, &mut work);
         let calls = (SPAN / once).ceil() as usize;
         let pairs = (0..REPETITIONS).map(|_| {

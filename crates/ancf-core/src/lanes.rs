@@ -124,9 +124,9 @@ impl<S: Simd> Transpose<S> {
         simd.interleave_shfl_f64s([numbers[0].value, numbers[1].value, numbers[2].value, numbers[3].value])
     }
 
-    /// Stores numbers of several elements, which have `size` numbers each in `target`, from `first` on.
+    /// Stores numbers of several elements, `size` each, element by element in `target`.
     #[inline(always)]
-    pub fn store(self, numbers: &[Lanes<S>], first: usize, size: usize, target: &mut [f64]) {
+    pub fn store(self, numbers: &[Lanes<S>], size: usize, target: &mut [f64]) {
         let elements = target.len() / size;
         let fours = numbers.chunks_exact(FOUR);
         let rest = fours.remainder();
@@ -135,14 +135,14 @@ impl<S: Simd> Transpose<S> {
             for (place, values) in cast_slice::<_, f64>(&values).chunks_exact(FOUR).enumerate() {
                 let element = self.lanes[place];
                 if element < elements {
-                    target[element * size + first + FOUR * i..][..FOUR].copy_from_slice(values);
+                    target[element * size + FOUR * i..][..FOUR].copy_from_slice(values);
                 }
             }
         }
         for (i, number) in rest.iter().enumerate() {
             let values = number.to_array();
             for (lane, element) in target.chunks_exact_mut(size).enumerate() {
-                element[first + numbers.len() - rest.len() + i] = values[lane];
+                element[size - rest.len() + i] = values[lane];
             }
         }
     }

@@ -66,6 +66,23 @@ fn tolerances_are_kept() {
     }
 }
 
+/// A thick plate of steel hardly deforms and swings in few long steps, in which the order of Runge-Kutta methods falls.
+/// Their tolerances are kept there too, whatever they are. `benchmarks/motion.py sweep` prints this for all methods.
+#[test]
+fn tolerances_are_kept_where_a_body_is_nearly_rigid() {
+    let model = pendulum_of(1, 0.01, Material::new(2e11, 0.3, 7810.0).unwrap());
+    // Another method, without elasticity.
+    let reference = end(model.clone(), &options(Method::Rigid, Steps::controlled(1e-9), 0.3));
+    for method in [Method::Esdirk, Method::TrBdf2] {
+        for k in 0..20 {
+            let rtol = 10.0_f64.powf(-2.0 - 0.1 * f64::from(k));
+            let found = end(model.clone(), &options(method, Steps::controlled(rtol), 0.3));
+            let error = distance(&model, &found, &reference) / (0.3 * 2.0_f64.sqrt());
+            assert!(error < 3.0 * rtol, "{} {rtol:.1e}: {error:.1e}", method.name());
+        }
+    }
+}
+
 /// However loose the tolerance, explicit steps stay stable: what grows in the gradients, which error control does not
 /// see, never comes to move positions. The thick solid has its highest frequencies there.
 #[test]

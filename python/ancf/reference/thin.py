@@ -1,5 +1,6 @@
 """Thin elements: membrane strain and curvature of a surface; Dufva and Shabana (2005), section 3."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -66,9 +67,11 @@ class Thin(Element):
         energy = self._strain_energy(rule, MEMBRANE, self.thickness)
         if self.membrane != "projected":
             return energy
-        Pi = projection()
-        delta = np.minimum(1, (self.thickness / self._larger_side()) ** 2)
-        weight = (1 - delta) * Pi.T @ energy.weight @ Pi + delta * energy.weight
+        side = self._larger_side()
+        smooth = projection([(1, 1), (1, 1), (1, 1)])
+        Pi = smooth + np.sqrt(self._rough_share(side)) * (projection() - smooth)
+        delta = np.minimum(1, (self.thickness / side) ** 2)
+        weight = (1 - delta) * Pi.swapaxes(1, 2) @ energy.weight @ Pi + delta * energy.weight
         return StrainEnergy(energy.table, energy.measure, weight, energy.reference)
 
     def bending_energy(self) -> StrainEnergy:
@@ -98,16 +101,31 @@ class Thin(Element):
         sides = einsum("s,esv->ev", rule.weights, lengths) * [self.l, self.w]
         return np.asarray(sides.max(axis=1)[:, None, None])
 
+    def _rough_share(self, side: FloatArray) -> FloatArray:
+        """Share of the energy of E_xx not linear in y and of E_yy not linear in x, shape (elements, 1, 1).
 
-def projection() -> FloatArray:
+        min(1, h^2 / (|K| l^4)), K the mean Gaussian curvature of the reference, l the larger side: inextensional
+        bending of a doubly curved surface is out of the element's reach in these parts, which matters where
+        l > sqrt(R h).
+        """
+        rule = square(gauss(3))
+        vectors = self._reference_vectors(rule)
+        n = normal(vectors)
+        xx, yy, xy = np.moveaxis(einsum("esvi,esi->esv", vectors[..., 2:, :], n), -1, 0)
+        curvature = np.abs(((xx * yy - xy**2) / einsum("esi,esi->es", n, n) ** 2) @ rule.weights)
+        with np.errstate(divide="ignore"):
+            return np.asarray(np.minimum(1, self.thickness**2 / (curvature[:, None, None] * side**4)))
+
+
+def projection(degrees: Sequence[tuple[int, int]] = ((1, 3), (3, 1), (1, 1))) -> FloatArray:
     """L2 projection of the membrane strain, in the element's parameters, at the 4x4 Gauss points, shape (48, 48).
 
-    E_xx on P1(x) P3(y), E_yy on P3(x) P1(y), E_xy on P1(x) P1(y); rank 20.
+    E_xx, E_yy and E_xy on polynomials of these degrees in x and y; the default has rank 20.
     """
     rule = square(gauss(4))
     samples = len(rule.weights)
     Pi = np.zeros((samples, 3, samples, 3))
-    for component, (p, q) in enumerate([(1, 3), (3, 1), (1, 1)]):
+    for component, (p, q) in enumerate(degrees):
         basis = np.polynomial.legendre.legvander2d(2 * rule.points[:, 0] - 1, 2 * rule.points[:, 1] - 1, [p, q])
         moments = basis.T * rule.weights
         Pi[:, component, :, component] = basis @ np.linalg.solve(moments @ basis, moments)

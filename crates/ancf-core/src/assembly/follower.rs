@@ -2,13 +2,11 @@
 //! skew half acts on vectors.
 
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
 
-use crate::element::{self, ElementBlock, Outcome};
+use crate::element::{self, ElementBlock, tangent_place};
 use crate::mesh::{Edge, End, Grid};
 use crate::model::History;
 use crate::quadrature::Rule;
-use crate::strain::packed;
 
 /// A load on some elements of a block that depends on the state.
 pub(super) struct Follower {
@@ -90,34 +88,33 @@ impl Follower {
         }
     }
 
-    /// Subtracts `factor` times the symmetric part of the load's derivative from the element tangents.
+    /// Subtracts `factor` times the symmetric part of the load's derivative from the tangent of an element.
     pub fn subtract_stiffness(
         &self,
         elements: &dyn ElementBlock,
+        element: usize,
         reference: &[f64],
         q: &[f64],
         factor: f64,
-        outcome: &mut Outcome,
+        tangent: &mut [f64],
     ) {
-        let n = elements.vectors_per_element();
-        let size = 9 * n * (n + 1) / 2;
-        let parts = outcome.tangent.par_chunks_mut(size).enumerate().filter(|(element, _)| self.loaded[*element]);
-        parts.for_each(|(element, tangent)| {
-            let vectors = elements.vectors(element);
-            for point in &self.points {
-                let stiffness = self.conjugates(point, vectors, reference, q, factor).1;
-                for b in 0..n {
-                    for a in 0..=b {
-                        let block = 0.5 * (stiffness.between(point, a, b) + stiffness.between(point, b, a).transpose());
-                        for i in 0..3 {
-                            for j in 0..3 {
-                                tangent[9 * packed(a, b) + 3 * i + j] -= block[(i, j)];
-                            }
+        if !self.loaded[element] {
+            return;
+        }
+        let (vectors, n) = (elements.vectors(element), elements.vectors_per_element());
+        for point in &self.points {
+            let stiffness = self.conjugates(point, vectors, reference, q, factor).1;
+            for b in 0..n {
+                for a in b..n {
+                    let block = 0.5 * (stiffness.between(point, a, b) + stiffness.between(point, b, a).transpose());
+                    for i in 0..3 {
+                        for j in 0..if a == b { i + 1 } else { 3 } {
+                            tangent[tangent_place(n, [a, i], [b, j])] -= block[(i, j)];
                         }
                     }
                 }
             }
-        });
+        }
     }
 
     /// Adds `factor` times the skew part of the load's derivative, times `x`, to `y`.

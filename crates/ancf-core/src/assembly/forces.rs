@@ -1,8 +1,8 @@
-//! Forces and tangents: elements evaluated, then summed in the order of the nodes.
+//! Forces and tangents: elements evaluated and summed.
 
 use std::time::Instant;
 
-use crate::element::{At, Want};
+use crate::element::{At, Portion, Want};
 use crate::material::Damping;
 use crate::model::History;
 
@@ -21,13 +21,7 @@ impl System {
 
     /// Elastic and viscous force on all coordinates, and the strain energy.
     pub fn force(&mut self, at: At<'_>, force: &mut [f64]) -> StrainEnergy {
-        let start = Instant::now();
-        self.evaluate(at, None);
-        let evaluated = Instant::now();
-        self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
-        self.timers.scatter += evaluated.elapsed();
-        self.timers.assembly += start.elapsed();
-        self.energy()
+        self.evaluate(at, None, force)
     }
 
     /// Force of the loads `Q_e` on all coordinates at time (or load factor) `t`.
@@ -64,33 +58,44 @@ impl System {
     /// included, which is kept for [`factorize`](Self::factorize). It is symmetric: of loads that follow the surface it
     /// has the symmetric half, of viscous and mean forces what stays when `B` does not change within a step.
     pub fn assemble_at(&mut self, at: At<'_>, t: f64, want: Want<'_>, force: &mut [f64]) -> StrainEnergy {
-        let start = Instant::now();
-        self.evaluate(at, Some(want));
         if self.loads.follow() {
-            let factors: Vec<_> = self.loads.follower_factors(t).map(|factor| want.stiffness * factor).collect();
-            self.loads.subtract_stiffness(&self.blocks, self.model.reference(), at.q, &factors, &mut self.outcomes);
+            let factors = self.loads.follower_factors(t).map(|factor| want.stiffness * factor).collect();
             self.tangent_at = (at.q.to_vec(), factors);
         }
-        let evaluated = Instant::now();
-        self.scatter.sum_forces(&self.blocks, &self.outcomes, force);
-        self.scatter.sum(&self.blocks, &self.outcomes, &mut self.values);
-        self.timers.scatter += evaluated.elapsed();
-        self.timers.assembly += start.elapsed();
-        self.energy()
+        self.evaluate(at, Some(want), force)
     }
 
-    fn evaluate(&mut self, at: At<'_>, want: Option<Want<'_>>) {
+    /// Evaluates and sums forces, and the tangent if it is wanted.
+    fn evaluate(&mut self, at: At<'_>, want: Option<Want<'_>>, force: &mut [f64]) -> StrainEnergy {
+        let start = Instant::now();
         self.forces += 1;
-        for (block, outcome) in self.blocks.iter().zip(&mut self.outcomes) {
-            block.evaluate(at, want, outcome);
+        let Self { blocks, loads, model, tangent_at, .. } = self;
+        let followers = want.is_some() && loads.follow();
+        let evaluate = |block: usize, elements: &[u32], take: &mut dyn FnMut(Portion<'_>)| {
+            blocks[block].evaluate(elements, at, want, &mut |mut portion| {
+                if followers {
+                    loads.subtract_stiffness(blocks, block, model.reference(), at.q, &tangent_at.1, &mut portion);
+                }
+                take(portion);
+            });
+        };
+        let values = want.map(|_| self.values.as_mut_slice());
+        self.timers.scatter += self.scatter.sum(evaluate, values, &mut self.ordered, force, &mut self.subtotals);
+        self.timers.assembly += start.elapsed();
+
+        let mut energy = StrainEnergy::default();
+        for [membrane, bending] in self.subtotals.iter().flat_map(|subtotal| &subtotal.energy) {
+            energy.membrane += membrane;
+            energy.bending += bending;
         }
+        energy
     }
 
     /// Strain rates of the forces that were evaluated last, at the velocities given there.
     pub fn strain_rates(&self) -> StrainRates {
         let mut rates = StrainRates::default();
-        for (block, outcome) in self.blocks.iter().zip(&self.outcomes) {
-            for [square, missed] in &outcome.rates {
+        for subtotal in &self.subtotals {
+            for (block, [square, missed]) in self.blocks.iter().zip(&subtotal.rates) {
                 rates.power += block.damping().viscosity * square;
                 rates.square += square;
                 rates.missed += missed;
@@ -102,14 +107,5 @@ impl System {
     /// Whether any material is damped.
     pub fn is_damped(&self) -> bool {
         self.blocks.iter().any(|block| block.damping() != Damping::default())
-    }
-
-    fn energy(&self) -> StrainEnergy {
-        let mut energy = StrainEnergy::default();
-        for [membrane, bending] in self.outcomes.iter().flat_map(|outcome| &outcome.energy) {
-            energy.membrane += membrane;
-            energy.bending += bending;
-        }
-        energy
     }
 }

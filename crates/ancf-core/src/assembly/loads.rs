@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::element::{ElementBlock, Outcome};
+use crate::element::{ElementBlock, Portion};
 use crate::mesh::End;
 use crate::model::{History, LoadKind, Model};
 use crate::quadrature::Rule;
@@ -106,18 +106,22 @@ impl Loads {
         !self.followers.is_empty()
     }
 
-    /// Subtracts the symmetric half of the followers' stiffness, each times its factor, from the element tangents.
+    /// Subtracts the symmetric half of the followers' stiffness, each times its factor, from the tangents of elements of
+    /// a block.
     pub fn subtract_stiffness(
         &self,
         blocks: &[Box<dyn ElementBlock>],
+        block: usize,
         reference: &[f64],
         q: &[f64],
         factors: &[f64],
-        outcomes: &mut [Outcome],
+        portion: &mut Portion<'_>,
     ) {
-        for (load, &factor) in self.followers.iter().zip(factors) {
-            let elements = blocks[load.block].as_ref();
-            load.subtract_stiffness(elements, reference, q, factor, &mut outcomes[load.block]);
+        let size = portion.tangent.len() / portion.elements.len();
+        for (load, &factor) in self.followers.iter().zip(factors).filter(|(load, _)| load.block == block) {
+            for (&element, tangent) in portion.elements.iter().zip(portion.tangent.chunks_exact_mut(size)) {
+                load.subtract_stiffness(blocks[block].as_ref(), element as usize, reference, q, factor, tangent);
+            }
         }
     }
 

@@ -1,14 +1,16 @@
 //! The global system of a model: mass, forces and tangent, and the linear equations for its free coordinates.
 //!
-//! `numbering` gives the free coordinates their numbers and `scatter` the entries of element tangents their places;
-//! `loads` holds what acts on the model (`follower` what turns with it), `mass` its inertia. `forces` evaluates elements
+//! `numbering` gives the free coordinates their numbers, `columns` the entries of the tangent their places; `parts` cuts
+//! the model into tasks and `scatter` sums what their elements give. `loads` holds what acts on the model (`follower` what turns with it), `mass` its inertia. `forces` evaluates elements
 //! and sums them, `solve` factorises the tangent and solves with it.
 
+mod columns;
 mod follower;
 mod forces;
 mod loads;
 mod mass;
 mod numbering;
+mod parts;
 mod scatter;
 mod solve;
 mod totals;
@@ -16,7 +18,7 @@ mod totals;
 use std::sync::Arc;
 use std::time::Instant;
 
-use crate::element::{ElementBlock, Outcome};
+use crate::element::ElementBlock;
 use crate::linear::{Factorization, LinearError, SymmetricMatrix};
 use crate::mesh::Place;
 use crate::model::Model;
@@ -24,7 +26,7 @@ use crate::model::Model;
 use loads::Loads;
 use mass::{mass_damping, mass_matrix};
 use numbering::Numbering;
-use scatter::Scatter;
+use scatter::{Scatter, Subtotal};
 
 pub use totals::{StrainEnergy, StrainRates, Timers};
 
@@ -44,7 +46,9 @@ pub struct System {
     loads: Loads,
     /// The state of the last tangent, for the skew part of the followers: coordinates, and the factor of each load.
     tangent_at: (Vec<f64>, Vec<f64>),
-    outcomes: Vec<Outcome>,
+    /// What each part of the model gave when it was evaluated last, and room for the forces in the order of elimination.
+    subtotals: Vec<Subtotal>,
+    ordered: Vec<f64>,
     values: Vec<f64>,
     factorization: Factorization,
     free: Vec<f64>,
@@ -72,7 +76,8 @@ impl System {
         Ok(Self {
             values: vec![0.0; scatter.pattern().nnz()],
             free: vec![0.0; numbering.coordinate.len()],
-            outcomes: vec![Outcome::default(); blocks.len()],
+            subtotals: Vec::new(),
+            ordered: vec![0.0; model.reference().len()],
             loads,
             tangent_at: (Vec::new(), Vec::new()),
             forces: 0,

@@ -1,134 +1,67 @@
-//! From element tangents to the global one, the same sum in the same order on any number of threads.
+//! From elements to the global forces and the global tangent, the same sum in the same order on any number of threads.
 //!
-//! The columns of a node follow each other in the matrix, so nodes are shared out among threads; each adds what its
-//! elements give, in the order of the elements.
+//! Each part of the model evaluates its elements and adds what they give at once, while it is in the cache: to its own
+//! columns of the tangent, which no other part touches, or to copies of the columns on its border. Then each part adds the
+//! copies that earlier parts have made of its columns, in their order.
 
 use std::ops::Range;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::element::{ElementBlock, Outcome};
+use crate::element::{Portion, tangent_size};
 use crate::linear::{LinearError, Pattern};
 use crate::strain::packed;
 
+use super::columns::{Column, Columns};
 use super::numbering::{Node, Numbering};
+use super::parts::{Part, Slots};
 
-/// Nodes handled by one task.
-const TASK: usize = 64;
+/// Nodes whose forces are put in their places by one task.
+const TASK: usize = 4096;
 
-/// Nodes whose forces are summed by one task.
-const FORCE_TASK: usize = 512;
-
-/// Marks rows that are not stored in the lower triangle.
-const ABOVE: u32 = u32::MAX;
-
-/// An element that a node belongs to.
-#[derive(Clone, Copy, Debug)]
-struct Incident {
-    block: u32,
-    element: u32,
-    corner: u32,
-    /// For each corner of the element, where its rows begin below the diagonal block of this node's columns.
-    offsets: [u32; 4],
-}
-
-/// The columns of one node.
-#[derive(Clone, Debug)]
-struct Column {
-    /// Free number of its first free coordinate.
-    first: usize,
-    /// Its free coordinates, numbered within the node.
-    free: Range<usize>,
-    incidents: Range<usize>,
-}
-
-/// Where each entry of an element tangent goes.
+/// Where each entry of element forces and tangents goes.
 #[derive(Clone, Debug)]
 pub(super) struct Scatter {
     pattern: Arc<Pattern>,
     nodes: Vec<Node>,
-    columns: Vec<Column>,
-    free: Vec<u8>,
-    incidents: Vec<Incident>,
+    /// The place of each node in the order of elimination.
     place: Vec<usize>,
-    cells: Vec<Vec<[usize; 4]>>,
-    /// For each body and each column of its element tangents the places of the entries.
-    entries: Vec<Vec<Vec<u32>>>,
+    columns: Columns,
+    parts: Vec<Part>,
+}
+
+/// What a part gives beside its own columns and forces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Subtotal {
+    /// Columns and forces of the nodes on its border.
+    border: [Vec<f64>; 2],
+    /// Membrane and bending energy in each block.
+    pub energy: Vec<[f64; 2]>,
+    /// Strain rates in each block, as in [`Portion`].
+    pub rates: Vec<[f64; 2]>,
+    /// The time for the elements, and that for their sum.
+    time: [Duration; 2],
+}
+
+/// A global vector or matrix in the order of elimination, to be shared out among parts.
+struct Rest<'a>(&'a mut [f64]);
+
+impl<'a> Rest<'a> {
+    /// The next numbers.
+    fn take(&mut self, count: usize) -> &'a mut [f64] {
+        self.0.split_off_mut(..count).expect("as many as all parts have")
+    }
 }
 
 impl Scatter {
     /// Makes the pattern of the tangent and the places of all element entries in it.
     pub fn new(numbering: &Numbering) -> Result<Self, LinearError> {
-        let Numbering { nodes, cells, order, place, .. } = numbering;
-        let mut elements_of = vec![Vec::new(); nodes.len()];
-        for (block, cells) in cells.iter().enumerate() {
-            for (element, cell) in cells.iter().enumerate() {
-                for (corner, &node) in cell.iter().enumerate() {
-                    elements_of[node].push((block, element, corner));
-                }
-            }
-        }
-
-        let mut free = Vec::new();
-        let mut columns = Vec::with_capacity(nodes.len());
-        let mut first = 0;
-        for &node in order {
-            let Node { first_vector, vectors } = nodes[node];
-            let start = free.len();
-            free.extend((0..3 * vectors).filter(|c| numbering.free(3 * first_vector + c).is_some()).map(|c| c as u8));
-            columns.push(Column { first, free: start..free.len(), incidents: 0..0 });
-            first += free.len() - start;
-        }
-
-        let mut incidents = Vec::new();
-        let (mut col_ptr, mut row_idx) = (vec![0], Vec::new());
-        for k in 0..columns.len() {
-            let elements = &elements_of[order[k]];
-            let mut later: Vec<_> = elements.iter().flat_map(|&(b, e, _)| cells[b][e].map(|n| place[n])).collect();
-            later.retain(|other| *other > k);
-            later.sort_unstable();
-            later.dedup();
-
-            let rows = |c: &Column| c.first..c.first + c.free.len();
-            let own = rows(&columns[k]);
-            for column in own.clone() {
-                row_idx.extend(column..own.end);
-                row_idx.extend(later.iter().flat_map(|other| rows(&columns[*other])));
-                col_ptr.push(row_idx.len());
-            }
-
-            let mut offset = 0;
-            let mut offset_of = Vec::with_capacity(later.len());
-            for other in &later {
-                offset_of.push(offset);
-                offset += columns[*other].free.len() as u32;
-            }
-            let start = incidents.len();
-            incidents.extend(elements.iter().map(|&(block, element, corner)| Incident {
-                block: block as u32,
-                element: element as u32,
-                corner: corner as u32,
-                offsets: cells[block][element].map(|n| later.binary_search(&place[n]).map_or(ABOVE, |i| offset_of[i])),
-            }));
-            columns[k].incidents = start..incidents.len();
-        }
-        let pattern = Arc::new(Pattern::new(first, col_ptr, row_idx)?);
-        let entries = cells.iter().map(|cells| {
-            let size = 12 * nodes[cells[0][0]].vectors;
-            (0..size).map(|j| (0..size).map(|i| entry(i, j)).collect()).collect()
-        });
-        let entries = entries.collect();
-        Ok(Self {
-            pattern,
-            nodes: nodes.clone(),
-            columns,
-            free,
-            incidents,
-            place: place.clone(),
-            cells: cells.clone(),
-            entries,
-        })
+        let (columns, pattern) = Columns::new(numbering)?;
+        let parts = Part::cut(numbering, &columns);
+        let (nodes, place) = (numbering.nodes.clone(), numbering.place.clone());
+        Ok(Self { pattern: Arc::new(pattern), nodes, place, columns, parts })
     }
 
     /// The pattern of the tangent.
@@ -136,168 +69,215 @@ impl Scatter {
         &self.pattern
     }
 
-    /// Sums the element tangents of all blocks into `values`, in the order of the pattern.
-    pub fn sum(&self, blocks: &[Box<dyn ElementBlock>], outcomes: &[Outcome], values: &mut [f64]) {
-        let start = |column: &Column| self.pattern.col_ptr()[column.first];
-        if self.columns.len() <= TASK {
-            return self.sum_columns(&self.columns, blocks, outcomes, values);
-        }
-        let mut tasks = Vec::with_capacity(self.columns.len() / TASK + 1);
-        let mut rest = values;
-        for (i, columns) in self.columns.chunks(TASK).enumerate() {
-            let end = self.columns.get((i + 1) * TASK).map_or(self.pattern.nnz(), start);
-            let (part, others) = rest.split_at_mut(end - start(&columns[0]));
-            tasks.push((columns, part));
-            rest = others;
-        }
-        tasks.into_par_iter().for_each(|(columns, part)| self.sum_columns(columns, blocks, outcomes, part));
+    /// Evaluates all elements and sums their forces into `force`, over all coordinates of the model, and their tangents
+    /// into `values`, in the order of the pattern, if they are wanted. `evaluate` hands what elements of a block give to its
+    /// last argument; `ordered` has room for the forces. Returns the time that the sums take of the time for all.
+    pub fn sum(
+        &self,
+        evaluate: impl Fn(usize, &[u32], &mut dyn FnMut(Portion<'_>)) + Sync,
+        mut values: Option<&mut [f64]>,
+        ordered: &mut [f64],
+        force: &mut [f64],
+        subtotals: &mut Vec<Subtotal>,
+    ) -> Duration {
+        let begin = Instant::now();
+        subtotals.resize(self.parts.len(), Subtotal::default());
+        let tasks = self.share(values.as_deref_mut(), ordered).zip(subtotals.iter_mut());
+        each(self.parts.len(), tasks, |((part, sums), subtotal)| self.sum_part(part, &evaluate, sums, subtotal));
+        let time = |i: usize| subtotals.iter().map(|subtotal| subtotal.time[i]).sum::<Duration>().as_secs_f64();
+        let share = time(1) / (time(0) + time(1)).max(f64::MIN_POSITIVE);
+        let sums = begin.elapsed().mul_f64(share);
+
+        let begin = Instant::now();
+        each(self.parts.len(), self.share(values, ordered), |(part, sums)| self.sum_shares(part, sums, subtotals));
+        self.place_forces(ordered, force);
+        sums + begin.elapsed()
     }
 
-    /// The same for columns that follow each other; `values` begins with the first of them.
-    fn sum_columns(
+    /// The parts, each with its own columns and forces.
+    fn share<'a>(
+        &'a self,
+        values: Option<&'a mut [f64]>,
+        ordered: &'a mut [f64],
+    ) -> impl Iterator<Item = (&'a Part, [&'a mut [f64]; 2])> {
+        let wanted = values.is_some();
+        let (mut values, mut ordered) = (Rest(values.unwrap_or_default()), Rest(ordered));
+        self.parts.iter().map(move |part| {
+            let columns = &self.columns.of[part.nodes.clone()];
+            let (first, last) = (&columns[0], &columns[columns.len() - 1]);
+            let entries = if wanted { last.start + last.entries() - first.start } else { 0 };
+            (part, [values.take(entries), ordered.take(last.forces.end - first.forces.start)])
+        })
+    }
+
+    /// Evaluates the elements of a part and adds what they give.
+    fn sum_part(
         &self,
-        columns: &[Column],
-        blocks: &[Box<dyn ElementBlock>],
-        outcomes: &[Outcome],
-        values: &mut [f64],
+        part: &Part,
+        evaluate: &impl Fn(usize, &[u32], &mut dyn FnMut(Portion<'_>)),
+        [values, force]: [&mut [f64]; 2],
+        subtotal: &mut Subtotal,
     ) {
-        let origin = self.pattern.col_ptr()[columns[0].first];
+        let mut start = Instant::now();
+        let Subtotal { border, energy, rates, time } = subtotal;
         values.fill(0.0);
-        for column in columns {
-            for incident in &self.incidents[column.incidents.clone()] {
-                let (block, element) = (incident.block as usize, incident.element as usize);
-                let n = blocks[block].vectors_per_element();
-                let size = 9 * n * (n + 1) / 2;
-                let tangent = &outcomes[block].tangent[element * size..(element + 1) * size];
-                for other in 0..4 {
-                    let offset = incident.offsets[other];
-                    if other != incident.corner as usize && offset == ABOVE {
-                        continue;
-                    }
-                    let rows = &self.columns[self.place[self.cells[block][element][other]]];
-                    let corners = [other, incident.corner as usize];
-                    if column.free.len() == 3 * n / 4 && rows.free.len() == 3 * n / 4 {
-                        self.add_whole(column, origin, corners, offset as usize, n / 4, tangent, values);
-                    } else {
-                        self.add_free(column, rows, origin, corners, offset as usize, block, tangent, values);
-                    }
-                }
-            }
+        force.fill(0.0);
+        for ((border, size), wanted) in border.iter_mut().zip(part.border_size).zip([!values.is_empty(), true]) {
+            border.clear();
+            border.resize(if wanted { size } else { 0 }, 0.0);
         }
-    }
-
-    /// Adds what an element gives for the columns of one node and the rows of another, or the same, none of whose
-    /// coordinates are fixed: `corners` are those of the rows and of the columns, `kinds` the vectors of a node.
-    #[expect(clippy::too_many_arguments, reason = "the inner loop of the sum")]
-    fn add_whole(
-        &self,
-        column: &Column,
-        origin: usize,
-        [row_corner, column_corner]: [usize; 2],
-        offset: usize,
-        kinds: usize,
-        tangent: &[f64],
-        values: &mut [f64],
-    ) {
-        let starts = &self.pattern.col_ptr()[column.first..][..3 * kinds];
-        let same = row_corner == column_corner;
-        for v in 0..kinds {
-            let b = column_corner * kinds + v;
-            for u in (if same { v } else { 0 })..kinds {
-                let a = row_corner * kinds + u;
-                let block: &[f64; 9] = tangent[9 * packed(a.min(b), a.max(b))..].first_chunk().expect("a whole block");
-                for c in 0..3 {
-                    let j = 3 * v + c;
-                    let start = starts[j] - origin;
-                    if same && u == v {
-                        for (i, value) in values[start..start + 3 - c].iter_mut().enumerate() {
-                            *value += block[3 * c + c + i];
+        energy.clear();
+        rates.clear();
+        let mut slots = part.slots.iter();
+        *time = [Duration::ZERO, start.elapsed()];
+        for (block, elements) in part.elements.iter().enumerate() {
+            let (mut block_energy, mut block_rates) = ([0.0; 2], [0.0; 2]);
+            evaluate(block, elements, &mut |portion| {
+                let evaluated = Instant::now();
+                time[0] += evaluated - start;
+                let count = portion.elements.len();
+                for (element, slots) in slots.by_ref().take(count).enumerate() {
+                    for i in 0..2 {
+                        block_energy[i] += portion.energy[element][i];
+                        block_rates[i] += portion.rates[element][i];
+                    }
+                    let size = portion.force.len() / count;
+                    let own = &portion.force[element * size..(element + 1) * size];
+                    for (corner, own) in own.chunks_exact(size / 4).enumerate() {
+                        let (_, [_, first], inside) = part.node(&self.columns, slots.nodes[corner]);
+                        let target = if inside { &mut force[first..] } else { &mut border[1][first..] };
+                        for (sum, part) in target.iter_mut().zip(own) {
+                            *sum += part;
                         }
-                        continue;
                     }
-                    let first = start + 3 * u + if same { 0 } else { 3 * kinds + offset } - j;
-                    let target: &mut [f64; 3] = values[first..].first_chunk_mut().expect("rows of the column");
-                    for i in 0..3 {
-                        target[i] += if a <= b { block[3 * i + c] } else { block[3 * c + i] };
+                    if !portion.tangent.is_empty() {
+                        let size = tangent_size(size / 3);
+                        let tangent = &portion.tangent[element * size..(element + 1) * size];
+                        self.add_tangent(part, slots, tangent, values, &mut border[0]);
                     }
+                }
+                start = Instant::now();
+                time[1] += start - evaluated;
+            });
+            energy.push(block_energy);
+            rates.push(block_rates);
+        }
+    }
+
+    /// Adds the tangent of an element to the columns of a part and of its border.
+    fn add_tangent(&self, part: &Part, slots: &Slots, tangent: &[f64], values: &mut [f64], border: &mut [f64]) {
+        let pairs = tangent.len() / 10;
+        let nodes = slots.nodes.map(|node| part.node(&self.columns, node));
+        for r in 0..4 {
+            for c in 0..=r {
+                let pair = &tangent[packed(c, r) * pairs..][..pairs];
+                // Within a part and on its border, nodes are numbered in the order of elimination.
+                let transposed = slots.nodes[r] < slots.nodes[c];
+                let (early, late) = if transposed { (r, c) } else { (c, r) };
+                let (column, [first, _], inside) = nodes[early];
+                let target = if inside { &mut values[first..] } else { &mut border[first..] };
+                let offset = (r != c).then(|| slots.offsets[c + r * r.saturating_sub(1) / 2] as usize);
+                let (rows, columns) = (nodes[late].0.free.clone(), column.free.clone());
+                match (pair.len(), rows.len(), columns.len()) {
+                    (81, 9, 9) => add_whole::<9>(column, offset, pair, transposed, target),
+                    (144, 12, 12) => add_whole::<12>(column, offset, pair, transposed, target),
+                    _ => self.add_free(column, rows, offset, pair, transposed, target),
                 }
             }
         }
     }
 
-    /// The same where some of the coordinates are fixed.
-    #[expect(clippy::too_many_arguments, reason = "the inner loop of the sum")]
+    /// Adds the entries that a pair of corners has in the columns of the earlier node, some of whose coordinates, or of
+    /// the later node, are fixed. `rows` are the free coordinates of the later node, `offset` is where they begin below
+    /// the diagonal block; none for the diagonal block itself.
     fn add_free(
         &self,
         column: &Column,
-        rows: &Column,
-        origin: usize,
-        [row_corner, column_corner]: [usize; 2],
-        offset: usize,
-        block: usize,
-        tangent: &[f64],
-        values: &mut [f64],
+        rows: Range<usize>,
+        offset: Option<usize>,
+        pair: &[f64],
+        transposed: bool,
+        target: &mut [f64],
     ) {
-        let own = &self.free[column.free.clone()];
-        let rows = &self.free[rows.free.clone()];
-        let per_node = self.entries[block].len() / 4;
-        for (jj, &j) in own.iter().enumerate() {
-            let diagonal = self.pattern.col_ptr()[column.first + jj] - origin;
-            let (first, rows) = match row_corner == column_corner {
-                true => (diagonal, &rows[jj..]),
-                false => (diagonal + own.len() - jj + offset, rows),
+        let (columns, rows) = (&self.columns.free[column.free.clone()], &self.columns.free[rows]);
+        let [by_row, by_column] = if transposed { [pair.len().isqrt(), 1] } else { [1, pair.len().isqrt()] };
+        for (j, &own) in columns.iter().enumerate() {
+            let (begin, rows) = match offset {
+                Some(offset) => (column.begin(j) + columns.len() - j + offset, rows),
+                None => (column.begin(j), &rows[j..]),
             };
-            let entries = &self.entries[block][column_corner * per_node + j as usize][row_corner * per_node..];
-            for (value, &i) in values[first..].iter_mut().zip(rows) {
-                *value += tangent[entries[i as usize] as usize];
+            for (sum, &row) in target[begin..].iter_mut().zip(rows) {
+                *sum += pair[own as usize * by_column + row as usize * by_row];
             }
         }
     }
 
-    /// Sums what the elements give on each nodal vector into `force`, over all coordinates of the model.
-    pub fn sum_forces(&self, blocks: &[Box<dyn ElementBlock>], outcomes: &[Outcome], force: &mut [f64]) {
-        if self.nodes.len() <= FORCE_TASK {
-            return self.sum_node_forces(0, blocks, outcomes, force);
+    /// Adds to the columns and forces of a part what earlier ones have summed for them.
+    fn sum_shares(&self, part: &Part, [values, force]: [&mut [f64]; 2], subtotals: &[Subtotal]) {
+        let first = &self.columns.of[part.nodes.start];
+        for share in &part.shares {
+            let border = &self.parts[share.part].border[share.border];
+            let column = &self.columns.of[border.place];
+            let [tangent, forces] = &subtotals[share.part].border;
+            if !values.is_empty() {
+                add(&mut values[column.start - first.start..], &tangent[border.first[0]..][..column.entries()]);
+            }
+            add(
+                &mut force[column.forces.start - first.forces.start..],
+                &forces[border.first[1]..][..column.forces.len()],
+            );
         }
-        let mut tasks = Vec::with_capacity(self.nodes.len() / FORCE_TASK + 1);
-        let mut rest = force;
-        for first in (0..self.nodes.len()).step_by(FORCE_TASK) {
-            let end = self
-                .nodes
-                .get(first + FORCE_TASK)
-                .map_or(rest.len(), |next| 3 * (next.first_vector - self.nodes[first].first_vector));
-            let (part, others) = rest.split_at_mut(end);
-            tasks.push((first, part));
-            rest = others;
-        }
-        tasks.into_par_iter().for_each(|(first, part)| self.sum_node_forces(first, blocks, outcomes, part));
     }
 
-    /// The same for the nodes from `first` on whose coordinates are in `force`.
-    fn sum_node_forces(&self, first: usize, blocks: &[Box<dyn ElementBlock>], outcomes: &[Outcome], force: &mut [f64]) {
-        force.fill(0.0);
-        let mut rest = force;
-        for node in first..self.nodes.len() {
-            if rest.is_empty() {
-                break;
+    /// Puts forces from the order of elimination into that of the model.
+    fn place_forces(&self, ordered: &[f64], force: &mut [f64]) {
+        let mut rest = Rest(force);
+        let tasks = self.nodes.chunks(TASK).zip(self.place.chunks(TASK)).map(|(nodes, place)| {
+            let count = nodes.iter().map(|node| 3 * node.vectors).sum();
+            (place, rest.take(count))
+        });
+        each(self.nodes.len().div_ceil(TASK), tasks, |(place, force)| {
+            let mut rest = Rest(force);
+            for &place in place {
+                let own = &ordered[self.columns.of[place].forces.clone()];
+                rest.take(own.len()).copy_from_slice(own);
             }
-            let (target, others) = rest.split_at_mut(3 * self.nodes[node].vectors);
-            rest = others;
-            for incident in &self.incidents[self.columns[self.place[node]].incidents.clone()] {
-                let block = incident.block as usize;
-                let size = 3 * blocks[block].vectors_per_element();
-                let begin = incident.element as usize * size + incident.corner as usize * target.len();
-                for (sum, part) in target.iter_mut().zip(&outcomes[block].force[begin..]) {
-                    *sum += part;
-                }
-            }
-        }
+        });
     }
 }
 
-/// The place of entry `(i, j)` in a packed symmetric matrix of 3 x 3 blocks.
-fn entry(i: usize, j: usize) -> u32 {
-    let (a, b) = (i / 3, j / 3);
-    let (block, row, column) = if a <= b { (packed(a, b), i % 3, j % 3) } else { (packed(b, a), j % 3, i % 3) };
-    (9 * block + 3 * row + column) as u32
+/// Does all of `count` tasks, in parallel if there are several.
+fn each<T: Send>(count: usize, tasks: impl Iterator<Item = T>, work: impl Fn(T) + Send + Sync) {
+    if count == 1 {
+        tasks.for_each(work);
+    } else {
+        tasks.collect::<Vec<_>>().into_par_iter().for_each(work);
+    }
+}
+
+/// Adds `SIDE` x `SIDE` entries as `Scatter::add_free` does, where no coordinate is fixed.
+fn add_whole<const SIDE: usize>(
+    column: &Column,
+    offset: Option<usize>,
+    pair: &[f64],
+    transposed: bool,
+    target: &mut [f64],
+) {
+    let pair: &[[f64; SIDE]] = pair.as_chunks().0;
+    let mut begin = offset.map_or(0, |offset| SIDE + offset);
+    for j in 0..SIDE {
+        // What lies above the diagonal is zero, and may be added to the end of the column before.
+        let target = target[begin..].first_chunk_mut::<SIDE>().expect("rows of the node");
+        for i in 0..SIDE {
+            target[i] += if transposed { pair[i][j] } else { pair[j][i] };
+        }
+        begin += column.length - j - 1;
+    }
+}
+
+/// Adds to the first numbers.
+fn add(sums: &mut [f64], parts: &[f64]) {
+    for (sum, part) in sums.iter_mut().zip(parts) {
+        *sum += part;
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::assembly::{StrainEnergy, System};
 use crate::error::InputError;
-use crate::nonlinear::{Failure, Kept};
+use crate::nonlinear::{Failure, Kept, Reuse, Trial};
 use crate::observe::State;
 use crate::report::{Counts, Rejections};
 
@@ -19,37 +19,46 @@ pub struct Checkpoint {
     pub(super) fingerprint: Fingerprint,
     pub(super) now: Instantaneous,
     pub(super) controller: Controller,
-    pub(super) tangent: Option<Tangent>,
+    pub(super) memory: Memory,
     pub(super) counts: Counts,
 }
 
-/// A tangent whose factorisation is kept for the next step.
+/// What Newton's method takes over from the last solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Memory {
+    reuse: Reuse,
+    /// The tangent whose factorisation is kept.
+    tangent: Option<Tangent>,
+}
+
+/// The values of a tangent, and the positions and velocities that it was made with.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tangent {
-    kept: Kept,
+struct Tangent {
     values: Vec<f64>,
     at: (Vec<f64>, Vec<f64>),
 }
 
-impl Tangent {
-    /// The tangent that Newton's method keeps, if it does.
-    pub fn of(equations: &Equations<'_>) -> Option<Self> {
+impl Memory {
+    pub fn of(equations: &Equations<'_>) -> Self {
         let system = &equations.system;
-        let kept = equations.newton.kept()?;
-        Some(Self { kept, values: system.tangent().1.to_vec(), at: system.tangent_at().clone() })
+        let reuse = equations.newton.reuse();
+        let tangent = || Tangent { values: system.tangent().1.to_vec(), at: system.tangent_at().clone() };
+        Self { reuse, tangent: reuse.kept.map(|_| tangent()) }
     }
 
-    /// Factorises it again.
+    /// Makes the next solution go on from there.
     pub fn restore(&self, equations: &mut Equations<'_>) -> Result<(), Failure> {
         let Equations { system, newton, .. } = equations;
-        system.restore(&self.values, &self.at).map_err(|e| Failure::from_linear(e, 0, |row| system.describe(row)))?;
-        newton.keep(Some(self.kept));
+        if let Some(Tangent { values, at }) = &self.tangent {
+            system.restore(values, at).map_err(|e| Failure::from_linear(e, 0, |row| system.describe(row)))?;
+        }
+        newton.resume(self.reuse);
         Ok(())
     }
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp3";
+const MAGIC: &[u8; 8] = b"ancf-cp4";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -64,7 +73,7 @@ impl Checkpoint {
         let given = format!("that of {} nodal coordinates", sizes[0]);
         InputError::check("checkpoint", given, sizes == [n; 4], &format!("that of a run with {n} nodal coordinates"))?;
         let entries = system.tangent().1.len();
-        let fits = self.tangent.as_ref().is_none_or(|tangent| tangent.values.len() == entries);
+        let fits = self.memory.tangent.as_ref().is_none_or(|tangent| tangent.values.len() == entries);
         InputError::check("checkpoint", "that of another mesh or support", fits, "that of a run of this model")?;
         let method = options.method.name();
         let given = format!("that of method \"{}\"", self.method);
@@ -84,7 +93,7 @@ impl Checkpoint {
     }
 
     fn write(&self, words: &mut Words) {
-        let Self { method, fingerprint, now, controller, tangent, counts } = self;
+        let Self { method, fingerprint, now, controller, memory, counts } = self;
         words.count(method.len());
         words.0.extend(method.as_bytes());
         words.0.extend(fingerprint.0.iter().flat_map(|digest| digest.to_le_bytes()));
@@ -106,8 +115,12 @@ impl Checkpoint {
         for count in [counts.iterations, counts.forces, counts.factorizations] {
             words.count(count);
         }
-        words.count(usize::from(tangent.is_some()));
-        if let Some(Tangent { kept, values, at }) = tangent {
+        for trial in memory.reuse.trials {
+            words.count(trial.pause);
+            words.count(trial.last_pause);
+        }
+        words.count(usize::from(memory.tangent.is_some()));
+        if let (Some(kept), Some(Tangent { values, at })) = (memory.reuse.kept, &memory.tangent) {
             words.numbers(&kept.coefficients);
             words.count(kept.negative);
             words.numbers(values);
@@ -158,14 +171,18 @@ impl Checkpoint {
             factorizations: words.count()?,
             ..Counts::default()
         };
+        let mut reuse = Reuse::default();
+        for trial in &mut reuse.trials {
+            *trial = Trial { pause: words.count()?, last_pause: words.count()? };
+        }
         let mut tangent = None;
         if words.count()? != 0 {
             let coefficients = words.numbers()?.try_into().ok()?;
-            let kept = Kept { coefficients, negative: words.count()? };
-            let values = words.numbers()?;
-            tangent = Some(Tangent { kept, values, at: (words.numbers()?, words.numbers()?) });
+            reuse.kept = Some(Kept { coefficients, negative: words.count()? });
+            tangent = Some(Tangent { values: words.numbers()?, at: (words.numbers()?, words.numbers()?) });
         }
-        Some(Self { method, fingerprint, now, controller, tangent, counts })
+        let memory = Memory { reuse, tangent };
+        Some(Self { method, fingerprint, now, controller, memory, counts })
     }
 }
 

@@ -5,7 +5,7 @@ use crate::observe::Observer;
 use crate::report::Counts;
 
 use super::Options;
-use super::checkpoint::{Checkpoint, Tangent};
+use super::checkpoint::{Checkpoint, Memory};
 use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
 use super::fingerprint::Fingerprint;
@@ -17,6 +17,10 @@ use super::state::Instantaneous;
 const LIMIT_EVERY: usize = 20;
 /// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates.
 const STABLE: f64 = 0.9;
+/// Change of the squared highest frequency in an iteration at which it is found: for a step that the limit may refuse, and
+/// where the share above covers what is missing.
+const PRECISE: f64 = 1e-6;
+const ROUGH: f64 = 1e-2;
 
 /// A motion while it is computed.
 pub(super) struct Simulation<'a> {
@@ -29,8 +33,9 @@ pub(super) struct Simulation<'a> {
     error: Vec<f64>,
     /// What is allowed of the error of each coordinate: finite for positions only.
     allowed: Vec<f64>,
-    /// The tangent that is kept from the last accepted step, when checkpoints are wanted.
-    tangent: Option<Tangent>,
+    /// What belongs to the state `now` in a checkpoint, when checkpoints are wanted: a step that is being tried has
+    /// changed the present ones already.
+    accepted: (Controller, Memory, Counts),
     /// Steps of this run and, after a checkpoint, all counts of the run before.
     counts: Counts,
     /// Evaluations and factorisations of the system before this run.
@@ -56,7 +61,7 @@ impl<'a> Simulation<'a> {
             next: Instantaneous::default(),
             error: vec![0.0; n],
             allowed,
-            tangent: None,
+            accepted: (Controller::new(0.0), Memory::default(), Counts::default()),
             counts: Counts::default(),
             earlier,
         }
@@ -94,6 +99,7 @@ impl<'a> Simulation<'a> {
             Steps::Controlled(tolerances) => tolerances.first_step.unwrap_or_else(|| self.first_step(tolerances)),
         });
         self.heed_limit()?;
+        self.accepted = (self.controller, Memory::default(), self.counts());
         if self.options.outputs.first() == Some(&0.0) {
             observer.state(self.now.output(&mut self.equations));
         }
@@ -150,7 +156,7 @@ impl<'a> Simulation<'a> {
             }
             std::mem::swap(&mut self.now, &mut self.next);
             if observer.wants_checkpoints() {
-                self.tangent = Tangent::of(&self.equations);
+                self.accepted = (self.controller, Memory::of(&self.equations), self.counts());
             }
             observer.reached(self.now.t);
             observer.checkpoint(&|states| self.checkpoint().to_bytes(states), false);
@@ -231,10 +237,10 @@ impl<'a> Simulation<'a> {
     /// # Source
     ///
     /// Belytschko, Liu and Moran, Nonlinear Finite Elements for Continua and Structures (2000), (6.2.21) for damping.
-    fn limit(&mut self) -> Option<f64> {
+    fn limit(&mut self, precision: f64) -> Option<f64> {
         let limit = self.integrator.explicit_limit()?;
         let Equations { system, inertia, .. } = &mut self.equations;
-        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q);
+        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q, precision);
         let damping = system.model().bodies().iter().map(|body| body.plate().material.damping());
         let ratio = damping.map(|d| 0.5 * (d.viscosity * omega + d.mass / omega)).fold(0.0, f64::max);
         Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
@@ -248,35 +254,36 @@ impl<'a> Simulation<'a> {
         match self.options.steps {
             Steps::Fixed { force: true, .. } => {}
             Steps::Fixed { step, .. } => {
-                if let Some(limit) = self.limit().filter(|limit| step > *limit) {
+                if let Some(limit) = self.limit(PRECISE).filter(|limit| step > *limit) {
                     return Err(Failure::StepAboveLimit { t: self.now.t, step, limit });
                 }
             }
-            Steps::Controlled(_) => self.controller.limit = self.limit().map_or(f64::INFINITY, |limit| STABLE * limit),
+            Steps::Controlled(_) => {
+                self.controller.limit = self.limit(ROUGH).map_or(f64::INFINITY, |limit| STABLE * limit);
+            }
         }
         Ok(())
     }
 
     /// What is needed to go on from the last accepted step.
     fn checkpoint(&self) -> Checkpoint {
+        let (controller, memory, counts) = self.accepted.clone();
         Checkpoint {
             method: self.options.method.name().to_owned(),
             fingerprint: Fingerprint::of(self.equations.system.model(), self.options),
             now: self.now.clone(),
-            controller: self.controller,
-            tangent: self.tangent.clone(),
-            counts: self.counts(),
+            controller,
+            memory,
+            counts,
         }
     }
 
     fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), Failure> {
-        let Checkpoint { now, controller, tangent, counts, .. } = checkpoint;
+        let Checkpoint { now, controller, memory, counts, .. } = checkpoint;
+        memory.restore(&mut self.equations)?;
         self.next = now.clone();
         (self.now, self.controller, self.counts) = (now, controller, counts);
-        if let Some(tangent) = &tangent {
-            tangent.restore(&mut self.equations)?;
-        }
-        self.tangent = tangent;
+        self.accepted = (controller, memory, counts);
         Ok(())
     }
 }

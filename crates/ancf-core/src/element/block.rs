@@ -1,21 +1,20 @@
 //! All elements of a body: what they share, and their energies, forces and tangents side by side.
 
+use std::cell::Cell;
+
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 use crate::lanes::{Aligned, Lanes, MAX_LANES, Transpose, Vector, arch};
 use crate::material::Damping;
-use crate::strain::{self, packed};
+use crate::strain::packed;
 
-use super::classes::Classes;
+use super::classes::classes;
 use super::constants::{COMPONENTS, Constants, Couplings, Section, to_lanes};
-use super::corners::{combine_all, distribute, distribute_all};
+use super::corners::{combine_all, distribute_all};
 use super::kernel::{Batch, Flow, Tangent, Totals, point_constants};
 use super::operations::Operations;
+use super::pairs::{tangent_size, to_pairs};
 use super::tables::{Group, Tables};
-
-/// Elements handled by one task: a multiple of every number of lanes, and long enough to be worth a task.
-const TASK: usize = 64;
 
 /// The state at which elements are evaluated.
 #[derive(Clone, Copy, Debug)]
@@ -64,18 +63,19 @@ pub struct Want<'a> {
     pub previous: Option<&'a [f64]>,
 }
 
-/// Energies, forces and tangents of all elements of a body.
-#[derive(Clone, Debug, Default)]
-pub struct Outcome {
+/// Energies, forces and tangents of a few elements, one after the other.
+pub struct Portion<'a> {
+    /// The numbers of the elements in their body.
+    pub elements: &'a [u32],
     /// Membrane and bending energy of each element.
-    pub energy: Vec<[f64; 2]>,
+    pub energy: &'a [[f64; 2]],
     /// Strain rates of each element as two numbers: `B v . W B v`, which times the viscosity is the power it takes, and
-    /// for mean forces `s . (eps - eps_start - B (q - q_start))`, the energy that they miss. Empty without viscous stress.
-    pub rates: Vec<[f64; 2]>,
+    /// for mean forces `s . (eps - eps_start - B (q - q_start))`, the energy that they miss. Zero without viscous stress.
+    pub rates: &'a [[f64; 2]],
     /// Elastic and viscous force on the nodal vectors of each element: `3 N` numbers an element.
-    pub force: Vec<f64>,
-    /// Packed symmetric blocks of each element's tangent, column by column, `a <= b`: `9 N (N + 1) / 2` numbers.
-    pub tangent: Vec<f64>,
+    pub force: &'a [f64],
+    /// Tangent of each element, in the order of [`tangent_place`](super::tangent_place); empty unless it is wanted.
+    pub tangent: &'a mut [f64],
 }
 
 /// The elements of a body, whatever their type.
@@ -99,8 +99,8 @@ pub trait ElementBlock: Send + Sync {
     fn damping(&self) -> Damping;
     /// Floating-point operations of an element.
     fn operations(&self) -> Operations;
-    /// Evaluates all elements; the tangents if they are wanted.
-    fn evaluate(&self, at: At<'_>, want: Option<Want<'_>>, outcome: &mut Outcome);
+    /// Evaluates some elements, the tangents if they are wanted, and hands what they give to `take`, a few at a time.
+    fn evaluate(&self, elements: &[u32], at: At<'_>, want: Option<Want<'_>>, take: &mut dyn FnMut(Portion<'_>));
     /// The derivatives of an element's shape functions, `in_x` and `in_y` times, at `(xi, eta)`.
     fn derivative(&self, orders: [usize; 2], point: [f64; 2]) -> Vec<f64>;
 }
@@ -119,12 +119,7 @@ pub(crate) struct Block<const N: usize> {
 impl<const N: usize> Block<N> {
     /// Elements on the nodal vectors `vectors`, whose reference state is the nodal coordinates `reference`.
     pub fn new(tables: Tables<N>, vectors: Vec<[u32; N]>, reference: &[f64], section: Section) -> Self {
-        let mut classes = Classes::new(&tables, section.thickness);
-        let class_of = vectors
-            .iter()
-            .map(|element| classes.find(Constants::new(&tables, &coordinates(element, reference), section)))
-            .collect();
-        let classes = classes.finish();
+        let (classes, class_of) = classes(&tables, &vectors, reference, section);
         let couplings = couplings(&tables, &classes);
         let damping = section.material.damping();
         Self { arch: arch(vectors.len()), tables, couplings, classes, class_of, vectors, damping }
@@ -139,7 +134,7 @@ impl<const N: usize> Block<N> {
 }
 
 /// The nodal vectors of an element.
-fn coordinates<const N: usize>(vectors: &[u32; N], q: &[f64]) -> [[f64; 3]; N] {
+pub(super) fn coordinates<const N: usize>(vectors: &[u32; N], q: &[f64]) -> [[f64; 3]; N] {
     vectors.map(|v| [q[3 * v as usize], q[3 * v as usize + 1], q[3 * v as usize + 2]])
 }
 
@@ -210,53 +205,36 @@ impl<const N: usize> ElementBlock for Block<N> {
         self.damping
     }
 
-    fn evaluate(&self, at: At<'_>, want: Option<Want<'_>>, outcome: &mut Outcome) {
-        let elements = self.elements();
-        let tangent_size = if want.is_some() { 9 * N * (N + 1) / 2 } else { 0 };
-        let rates_size = usize::from(self.flows(at));
-        outcome.energy.resize(elements, [0.0; 2]);
-        outcome.rates.resize(elements * rates_size, [0.0; 2]);
-        outcome.force.resize(elements * 3 * N, 0.0);
-        outcome.tangent.resize(elements * tangent_size, 0.0);
-
-        let mut tasks = Vec::with_capacity(elements.div_ceil(TASK));
-        let (mut rates, mut tangent) = (outcome.rates.as_mut_slice(), outcome.tangent.as_mut_slice());
-        let parts = outcome.energy.chunks_mut(TASK).zip(outcome.force.chunks_mut(TASK * 3 * N));
-        for (i, (energy, force)) in parts.enumerate() {
-            let (rates_part, rates_rest) = rates.split_at_mut(energy.len() * rates_size);
-            let (tangent_part, tangent_rest) = tangent.split_at_mut(energy.len() * tangent_size);
-            (rates, tangent) = (rates_rest, tangent_rest);
-            let first = i * TASK;
-            tasks.push(Task { block: self, at, want, first, energy, rates: rates_part, force, tangent: tangent_part });
-        }
-        if let [_] = tasks.as_slice() {
-            tasks.into_iter().for_each(|task| self.arch.dispatch(task));
-        } else {
-            tasks.into_par_iter().for_each(|task| self.arch.dispatch(task));
-        }
+    fn evaluate(&self, elements: &[u32], at: At<'_>, want: Option<Want<'_>>, take: &mut dyn FnMut(Portion<'_>)) {
+        self.arch.dispatch(Task { block: self, elements, at, want, take });
     }
 }
 
-/// Consecutive elements, evaluated with the instruction set that the processor has.
-struct Task<'a, const N: usize> {
-    block: &'a Block<N>,
-    at: At<'a>,
-    want: Option<Want<'a>>,
-    first: usize,
-    energy: &'a mut [[f64; 2]],
-    rates: &'a mut [[f64; 2]],
-    force: &'a mut [f64],
-    tangent: &'a mut [f64],
+thread_local! {
+    /// Memory for the tangents of a portion, kept from call to call: the system would clear it anew each time.
+    static TANGENTS: Cell<Vec<f64>> = const { Cell::new(Vec::new()) };
 }
 
-impl<const N: usize> WithSimd for Task<'_, N> {
+/// Elements, evaluated with the instruction set that the processor has.
+struct Task<'a, 'b, const N: usize> {
+    block: &'a Block<N>,
+    elements: &'a [u32],
+    at: At<'a>,
+    want: Option<Want<'a>>,
+    take: &'b mut dyn FnMut(Portion<'_>),
+}
+
+impl<const N: usize> WithSimd for Task<'_, '_, N> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { block, at, want, first, energy, rates, force, tangent } = self;
-        let count = energy.len();
+        let Self { block, elements, at, want, take } = self;
         let mut combined = want.map(|_| Tangent::<S, N>::new(simd));
+        let size = if want.is_some() { tangent_size(N) } else { 0 };
+        let mut tangent = TANGENTS.take();
+        tangent.resize(size * S::F64_LANES, 0.0);
+        let mut force = [[[0.0; 3]; N]; MAX_LANES];
         let (mut constants, mut mass) = (Vec::new(), Vec::new());
         let Damping { mass: mass_damping, viscosity } = block.damping;
         let factor = at.motion.map_or(0.0, |motion| viscosity + motion.viscosity);
@@ -266,17 +244,16 @@ impl<const N: usize> WithSimd for Task<'_, N> {
         let material = geometric + factor * rate;
         let order = Transpose::new(simd);
         let mut constants_of = [u32::MAX; MAX_LANES];
-        for begin in (0..count).step_by(S::F64_LANES) {
+        for elements in elements.chunks(S::F64_LANES) {
             // Lanes beyond the last element repeat it; what they give is not stored.
-            let mut members = [0; MAX_LANES];
-            for (lane, member) in members[..S::F64_LANES].iter_mut().enumerate() {
-                *member = first + (begin + lane).min(count - 1);
-            }
+            let count = elements.len();
+            let mut members = [elements[count - 1]; MAX_LANES];
+            members[..count].copy_from_slice(elements);
             let members = &members[..S::F64_LANES];
 
             let mut class_of = [u32::MAX; MAX_LANES];
             for (lane, &member) in members.iter().enumerate() {
-                class_of[lane] = block.class_of[member];
+                class_of[lane] = block.class_of[member as usize];
             }
             if class_of != constants_of {
                 let mut classes = [&block.classes[0]; MAX_LANES];
@@ -305,7 +282,7 @@ impl<const N: usize> WithSimd for Task<'_, N> {
             }
             let mut totals = Totals::<S, N>::new(simd);
             if let Some(combined) = &mut combined {
-                combined.clear(simd);
+                combined.empty = true;
             }
             let batch = Batch {
                 simd,
@@ -320,45 +297,33 @@ impl<const N: usize> WithSimd for Task<'_, N> {
             };
             batch.evaluate(&mut totals, combined.as_mut());
 
-            let lanes = S::F64_LANES.min(count - begin);
-            for (i, part) in totals.energy.iter().enumerate() {
-                let values = part.to_array();
-                for lane in 0..lanes {
-                    energy[begin + lane][i] = values[lane];
-                }
-            }
-            if !rates.is_empty() {
-                for (i, part) in totals.rates.iter().enumerate() {
-                    let values = part.to_array();
-                    for lane in 0..lanes {
-                        rates[begin + lane][i] = values[lane];
-                    }
-                }
-            }
+            let energy = by_element(totals.energy);
+            let rates = by_element(totals.rates);
             let forces = distribute_all(&totals.force);
-            order.store(forces.as_flattened(), 0, 3 * N, &mut force[begin * 3 * N..(begin + lanes) * 3 * N]);
-            if let (Some(want), Some(combined)) = (want, &mut combined) {
-                to_corners(&mut combined.blocks);
-                let size = 9 * N * (N + 1) / 2;
-                let target = &mut tangent[begin * size..(begin + lanes) * size];
-                let stiffness = Lanes::splat(simd, want.stiffness * material);
+            let force = force[..count].as_flattened_mut().as_flattened_mut();
+            order.store(forces.as_flattened(), 3 * N, force);
+            let tangent = &mut tangent[..count * size];
+            if let (Some(want), Some(Tangent { blocks, forms, .. })) = (want, &mut combined) {
                 let inertia = want.mass + want.stiffness * mass_damping * rate;
-                for b in 0..N {
-                    for a in 0..=b {
-                        let mut block = combined.blocks[b][a];
-                        let inertia = mass[packed(a, b)] * inertia;
-                        for i in 0..3 {
-                            for j in 0..3 {
-                                block[i][j] = block[i][j] * stiffness;
-                            }
-                            block[i][i] = block[i][i] + inertia;
-                        }
-                        order.store(block.as_flattened(), 9 * packed(a, b), size, target);
-                    }
-                }
+                let pairs = &mut forms.as_flattened_mut().as_flattened_mut()[..size];
+                to_pairs(blocks, want.stiffness * material, &mass, inertia, pairs);
+                order.store(pairs, size, tangent);
             }
+            take(Portion { elements, energy: &energy[..count], rates: &rates[..count], force, tangent });
         }
+        TANGENTS.set(tangent);
     }
+}
+
+/// Two numbers of each element.
+#[inline(always)]
+fn by_element<S: Simd>(numbers: [Lanes<S>; 2]) -> [[f64; 2]; MAX_LANES] {
+    let [first, second] = [numbers[0].to_array(), numbers[1].to_array()];
+    let mut pairs = [[0.0; 2]; MAX_LANES];
+    for (lane, pair) in pairs.iter_mut().enumerate() {
+        *pair = [first[lane], second[lane]];
+    }
+    pairs
 }
 
 /// The nodal vectors of several elements in lanes, as sums and differences over the corners.
@@ -366,13 +331,13 @@ impl<const N: usize> WithSimd for Task<'_, N> {
 fn gather<S: Simd, const N: usize>(
     simd: S,
     vectors: &[[u32; N]],
-    members: &[usize],
+    members: &[u32],
     q: &[f64],
 ) -> Aligned<[Vector<S>; N]> {
     let mut numbers = [[[0.0; MAX_LANES]; 3]; N];
     for (lane, &member) in members.iter().enumerate() {
         for a in 0..N {
-            let vector = &q[3 * vectors[member][a] as usize..][..3];
+            let vector = &q[3 * vectors[member as usize][a] as usize..][..3];
             for i in 0..3 {
                 numbers[a][i][lane] = vector[i];
             }
@@ -387,42 +352,82 @@ fn gather<S: Simd, const N: usize>(
     Aligned(combine_all(&lanes))
 }
 
-/// Turns the tangent of the sums and differences over the corners, `blocks[b][a]` for `a <= b`, into that of the nodal
-/// vectors.
-#[inline(always)]
-fn to_corners<S: Simd, const N: usize>(blocks: &mut [[strain::Block<S>; N]; N]) {
-    let kinds = N / 4;
-    for u in 0..kinds {
-        for v in u..kinds {
-            // Only the upper half is stored; entries of the lower one are those of transposed blocks.
-            let stored = |row: usize, column: usize| (row * kinds + u) <= (column * kinds + v);
-            for i in 0..3 {
-                for j in (if u == v { i } else { 0 })..3 {
-                    let mut rows = [[blocks[0][0][0][0]; 4]; 4];
-                    for row in 0..4 {
-                        for column in 0..4 {
-                            let (a, b) = (row * kinds + u, column * kinds + v);
-                            rows[row][column] =
-                                if stored(row, column) { blocks[b][a][i][j] } else { blocks[a][b][j][i] };
-                        }
-                        rows[row] = distribute(rows[row]);
-                    }
-                    for column in 0..4 {
-                        let entries = distribute([rows[0][column], rows[1][column], rows[2][column], rows[3][column]]);
-                        for row in 0..4 {
-                            let (a, b) = (row * kinds + u, column * kinds + v);
-                            if stored(row, column) {
-                                blocks[b][a][i][j] = entries[row];
-                            } else {
-                                blocks[a][b][j][i] = entries[row];
-                            }
-                            if a == b {
-                                blocks[b][b][j][i] = entries[row];
-                            }
-                        }
-                    }
-                }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::Membrane;
+    use crate::element::full48::full48a;
+    use crate::element::kind::Variant;
+    use crate::element::thin::{thin36, thin48};
+    use crate::material::Material;
+    use crate::strain::CurvatureLaw;
+
+    const SIDES: [f64; 2] = [0.3, 0.2];
+    const THICKNESS: f64 = 0.02;
+    /// More than the widest register holds, and no multiple of any.
+    const ELEMENTS: usize = 11;
+
+    /// Elements apart from each other, each of another shape.
+    fn block<const N: usize>(tables: Tables<N>) -> (Block<N>, Vec<f64>) {
+        let kinds = N / 4;
+        let mut q = Vec::new();
+        for a in 0..ELEMENTS * N {
+            let (corner, kind, bend) = (a / kinds % 4, a % kinds, 0.01 * (1.7 * a as f64).sin());
+            let at = [f64::from(matches!(corner, 1 | 2)), f64::from(corner >= 2)];
+            q.extend(match kind {
+                0 => [SIDES[0] * at[0], SIDES[1] * at[1], bend],
+                1 => [1.0, bend, 0.0],
+                2 => [bend, 1.0, 0.0],
+                _ => [0.0, bend, 1.0],
+            });
+        }
+        let vectors = (0..ELEMENTS).map(|e| std::array::from_fn(|a| (e * N + a) as u32)).collect();
+        let material =
+            Material::new(1e5, 0.3, 1e3).unwrap().with_damping(Damping { mass: 0.4, viscosity: 0.02 }).unwrap();
+        (Block::new(tables, vectors, &q, Section { material, thickness: THICKNESS }), q)
+    }
+
+    /// Energies, rates, forces and tangents with everything that a state can have.
+    fn numbers<const N: usize>(block: &Block<N>, q: &[f64]) -> [Vec<f64>; 4] {
+        let moved = |size: f64, phase: f64| -> Vec<f64> {
+            q.iter().enumerate().map(|(i, x)| x + size * (0.37 * i as f64 + phase).sin()).collect()
+        };
+        let (now, start, previous, velocity) = (moved(2e-2, 0.0), moved(1e-2, 1.0), moved(3e-2, 2.0), moved(0.1, 3.0));
+        let motion = Some(Motion { velocity: &velocity, rate: 20.0, viscosity: 0.01 });
+        let want = Want { mass: 3.0, stiffness: 0.7, previous: Some(&previous) };
+        let elements: Vec<u32> = (0..ELEMENTS as u32).rev().collect();
+        let mut numbers = [const { Vec::new() }; 4];
+        block.evaluate(&elements, At { q: &now, start: Some(&start), motion }, Some(want), &mut |portion| {
+            numbers[0].extend(portion.energy.as_flattened());
+            numbers[1].extend(portion.rates.as_flattened());
+            numbers[2].extend_from_slice(portion.force);
+            numbers[3].extend_from_slice(portion.tangent);
+        });
+        assert_eq!(numbers.each_ref().map(Vec::len), [2, 2, 3 * N, tangent_size(N)].map(|n| n * ELEMENTS));
+        numbers
+    }
+
+    fn check<const N: usize>(tables: Tables<N>) {
+        let (mut block, q) = block(tables);
+        block.arch = Arch::Scalar;
+        let expected = numbers(&block, &q);
+        // A register of four numbers and the widest there is.
+        for elements in [1, usize::MAX] {
+            block.arch = arch(elements);
+            for (numbers, expected) in numbers(&block, &q).iter().zip(&expected) {
+                let largest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                let error = numbers.iter().zip(expected).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+                assert!(largest > 0.0 && error < 1e-12 * largest, "{error:e} of {largest:e} with {:?}", block.arch);
             }
         }
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_numbers() {
+        for membrane in Membrane::ALL {
+            check(thin36(SIDES, Variant { membrane, curvature: CurvatureLaw::Paper }));
+        }
+        check(thin48(SIDES, Variant { membrane: Membrane::Projected, curvature: CurvatureLaw::Koiter }));
+        check(full48a(SIDES, THICKNESS));
     }
 }

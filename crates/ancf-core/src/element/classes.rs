@@ -2,9 +2,12 @@
 
 use std::collections::HashMap;
 
+use rayon::prelude::*;
+
 use crate::strain::{SOLID_PAIRS, packed};
 
-use super::constants::{COMPONENTS, Constants};
+use super::block::coordinates;
+use super::constants::{COMPONENTS, Constants, Section};
 use super::kernel::point_constants;
 use super::tables::{Group, Tables};
 
@@ -12,53 +15,96 @@ use super::tables::{Group, Tables};
 /// rounding of a fine mesh, and a strain that no load could show.
 const ROUNDING: f64 = 1.0 / (1_u64 << 40) as f64;
 
+/// Elements whose constants are made at once.
+const TASK: usize = 1024;
+
+/// The constants of each class, and the class of each element; `vectors` are the nodal vectors of the elements, of which the
+/// first of each corner is its position, and `reference` the nodal coordinates at rest.
+pub(super) fn classes<const N: usize>(
+    tables: &Tables<N>,
+    vectors: &[[u32; N]],
+    reference: &[f64],
+    section: Section,
+) -> (Vec<Constants>, Vec<u32>) {
+    let mut classes = Classes { tables, thickness: section.thickness, classes: Vec::new(), nearby: HashMap::new() };
+    let mut class_of = Vec::with_capacity(vectors.len());
+    // Most elements of a grid are shifted copies of one before.
+    let mut last = None;
+    for vectors in vectors.chunks(TASK) {
+        let shapes: Vec<_> = vectors
+            .iter()
+            .map(|vectors| {
+                let shape = coordinates(vectors, reference);
+                let copied = last.as_ref().is_some_and(|last| is_shifted(last, &shape));
+                if !copied {
+                    last = Some(shape);
+                }
+                (!copied).then_some(shape)
+            })
+            .collect();
+        let constants: Vec<_> =
+            shapes.par_iter().map(|shape| shape.as_ref().map(|shape| Constants::new(tables, shape, section))).collect();
+        for constants in constants {
+            let copied = class_of.last().copied();
+            class_of.push(constants.map_or_else(|| copied.expect("what it is a copy of"), |own| classes.find(own)));
+        }
+    }
+    (classes.classes, class_of)
+}
+
+/// Whether an element is another one, shifted, to rounding.
+fn is_shifted<const N: usize>(one: &[[f64; 3]; N], other: &[[f64; 3]; N]) -> bool {
+    let kinds = N / 4;
+    let from_first = |element: &[[f64; 3]; N], a: usize| {
+        let mut vector = element[a];
+        if a.is_multiple_of(kinds) {
+            (0..3).for_each(|c| vector[c] -= element[0][c]);
+        }
+        vector
+    };
+    // Each kind of vector is compared with the longest of it.
+    let mut largest = [0.0_f64; N];
+    let mut difference = [0.0_f64; N];
+    for a in 0..N {
+        let (u, v) = (from_first(one, a), from_first(other, a));
+        for c in 0..3 {
+            largest[a % kinds] = largest[a % kinds].max(u[c].abs());
+            difference[a % kinds] = difference[a % kinds].max((u[c] - v[c]).abs());
+        }
+    }
+    (0..kinds).all(|kind| difference[kind] <= ROUNDING * largest[kind])
+}
+
 /// Sorts constants into classes.
-pub(super) struct Classes<'a, const N: usize> {
+struct Classes<'a, const N: usize> {
     tables: &'a Tables<N>,
     thickness: f64,
-    classes: Vec<Class>,
+    classes: Vec<Constants>,
     /// The classes by the size of their first number, so that only few are compared number by number.
     nearby: HashMap<i64, Vec<u32>>,
 }
 
-struct Class {
-    constants: Constants,
-    /// What each number may differ by.
-    tolerance: Vec<f64>,
-}
-
-impl<'a, const N: usize> Classes<'a, N> {
-    pub fn new(tables: &'a Tables<N>, thickness: f64) -> Self {
-        Self { tables, thickness, classes: Vec::new(), nearby: HashMap::new() }
-    }
-
+impl<const N: usize> Classes<'_, N> {
     /// The number of the class of `constants`: a known one, or a new one made of them.
-    pub fn find(&mut self, constants: Constants) -> u32 {
+    fn find(&mut self, constants: Constants) -> u32 {
         // Cells are so much wider than rounding that equal numbers are in the same or in neighbouring ones.
         let cell = (constants.values[0].ln() / (ROUNDING * 1024.0)) as i64;
         let near = (cell - 1..=cell + 1).filter_map(|cell| self.nearby.get(&cell)).flatten().copied();
-        if let Some(known) = near.into_iter().find(|known| self.classes[*known as usize].contains(&constants)) {
+        let agrees = |known: &u32| contains(&self.classes[*known as usize], &constants, self.tables, self.thickness);
+        if let Some(known) = near.into_iter().find(agrees) {
             return known;
         }
         let new = self.classes.len() as u32;
-        let tolerance = tolerance(self.tables, &constants, self.thickness);
-        self.classes.push(Class { constants, tolerance });
+        self.classes.push(constants);
         self.nearby.entry(cell).or_default().push(new);
         new
     }
-
-    /// The constants of each class.
-    pub fn finish(self) -> Vec<Constants> {
-        self.classes.into_iter().map(|class| class.constants).collect()
-    }
 }
 
-impl Class {
-    fn contains(&self, other: &Constants) -> bool {
-        let Constants { values, mass, weight: _ } = &self.constants;
-        let pairs = values.iter().zip(&other.values).chain(mass.iter().zip(&other.mass));
-        pairs.zip(&self.tolerance).all(|((a, b), tolerance)| (a - b).abs() <= *tolerance)
-    }
+/// Whether constants are those of a class.
+fn contains<const N: usize>(class: &Constants, other: &Constants, tables: &Tables<N>, thickness: f64) -> bool {
+    let pairs = class.values.iter().zip(&other.values).chain(class.mass.iter().zip(&other.mass));
+    pairs.zip(tolerance(tables, class, thickness)).all(|((a, b), tolerance)| (a - b).abs() <= tolerance)
 }
 
 /// What each of the values and of the entries of the mass matrix may differ by: a share of the number itself on

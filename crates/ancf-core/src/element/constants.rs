@@ -1,6 +1,6 @@
 //! What all elements with congruent reference shapes share: `eps_0`, `W` and the mass matrix.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, Matrix3, Vector3};
 use pulp::{Scalar, Simd};
 
 use crate::lanes::{Lanes, MAX_LANES, Vector};
@@ -8,6 +8,7 @@ use crate::material::Material;
 use crate::strain::{Curvature, GreenLagrange, Measure, Metric, packed};
 
 use super::corners::combine_all;
+use super::projection::{MODES, Projection};
 use super::tables::{Group, Samples, Tables};
 
 /// The numbers of one class of congruent elements, in the order in which the kernel reads them.
@@ -59,19 +60,28 @@ impl Constants {
                     }
                 }
                 Group::Projected(samples, projection) => {
-                    let share = sampled_share(tables, reference, thickness);
+                    let longer = longer_side(tables, reference);
+                    // Enough to control every mode, and the whole energy where the element is as thick as it is long.
+                    let share = (thickness / longer).powi(2).min(1.0);
+                    let rough = rough_share(tables, vectors, [thickness, longer]);
                     let points: Vec<_> =
                         points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)).collect();
                     points.iter().for_each(|point| point.append(share * membrane, &mut values));
-                    for (l, second) in projection.modes.iter().enumerate() {
-                        for first in &projection.modes[..=l] {
-                            let entry = first.basis.iter().map(|&(g, phi)| {
-                                let same_point = second.basis.iter().find(|(other, _)| *other == g);
-                                let product = same_point.map_or(0.0, |(_, psi)| phi * psi) / samples.weights[g].powi(2);
-                                product * points[g].weight[first.component][second.component]
-                            });
-                            values.push((1.0 - share) * membrane * entry.sum::<f64>());
-                        }
+                    let mut weight = DMatrix::from_fn(MODES, MODES, |k, l| {
+                        let [first, second] = [&projection.modes[k], &projection.modes[l]];
+                        let entry = first.basis.iter().map(|&(g, phi)| {
+                            let same_point = second.basis.iter().find(|(other, _)| *other == g);
+                            let product = same_point.map_or(0.0, |(_, psi)| phi * psi) / samples.weights[g].powi(2);
+                            product * points[g].weight[first.component][second.component]
+                        });
+                        (1.0 - share) * membrane * entry.sum::<f64>()
+                    });
+                    if rough < 1.0 {
+                        let reduced = Projection::<N>::reduction(rough.sqrt());
+                        weight = &reduced * weight * &reduced;
+                    }
+                    for l in 0..MODES {
+                        values.extend((0..=l).map(|k| weight[(k, l)]));
                     }
                 }
                 Group::Bending(samples, law) => {
@@ -105,9 +115,8 @@ impl Constants {
     }
 }
 
-/// The share of the membrane energy that is not projected, `min(1, (h / l)^2)`, `l` the larger side: enough to control
-/// every mode, and the whole energy where the element is as thick as it is long.
-fn sampled_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thickness: f64) -> f64 {
+/// The larger of the mean lengths of an element along x and along y.
+fn longer_side<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N]) -> f64 {
     let mut sides = [0.0; 2];
     let mut total = 0.0;
     for (shape, weight) in &tables.mass {
@@ -115,8 +124,29 @@ fn sampled_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], 
         sides[1] += weight * interpolate(&shape.y, reference).norm();
         total += weight;
     }
-    let longer = (sides[0] * tables.sides[0]).max(sides[1] * tables.sides[1]) / total;
-    (thickness / longer).powi(2).min(1.0)
+    (sides[0] * tables.sides[0]).max(sides[1] * tables.sides[1]) / total
+}
+
+/// The share of the energy of `E_xx` that is not linear in y, and of `E_yy` that is not linear in x:
+/// `min(1, h^2 / (|K| l^4))`, `K` the mean Gaussian curvature of the reference, `l` the larger side.
+///
+/// A doubly curved surface bends without stretching in fields that the element cannot follow in these parts. It is no
+/// matter for elements shorter than the length `(h^2 / |K|)^(1/4)`, which is `sqrt(R h)` on a sphere, in which bending
+/// decays, and the energy of longer ones must not grow with their length.
+fn rough_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], [thickness, l]: [f64; 2]) -> f64 {
+    let mut curvature = 0.0;
+    let mut total = 0.0;
+    for group in &tables.groups {
+        if let Group::Bending(samples, _) = group {
+            for (table, weight) in samples.tables.iter().zip(&samples.weights) {
+                let [x, y, xx, yy, xy] = table.map(|row| interpolate(&row, reference));
+                let n = x.cross(&y);
+                curvature += weight * (xx.dot(&n) * yy.dot(&n) - xy.dot(&n).powi(2)) / n.norm_squared().powi(2);
+                total += weight;
+            }
+        }
+    }
+    (thickness.powi(2) * total / (curvature.abs() * l.powi(4))).min(1.0)
 }
 
 /// A sample in the reference state.

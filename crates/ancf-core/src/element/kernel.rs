@@ -8,6 +8,7 @@ use crate::lanes::{Aligned, Lanes, Vector};
 use crate::strain::{Block, Curvature, Form, GreenLagrange, Measure, Metric};
 
 use super::constants::Couplings;
+use super::moments::Moments;
 use super::patch::Patch;
 use super::projected;
 use super::tables::{Group, Samples, Tables};
@@ -71,17 +72,21 @@ pub(crate) struct Totals<S: Simd, const N: usize> {
 /// The tangent of a batch, which is added to.
 #[repr(C, align(64))]
 pub(crate) struct Tangent<S: Simd, const N: usize> {
-    /// `blocks[b][a]` for the vectors `a <= b`.
+    /// `blocks[b][a]` for the vectors `a <= b`, unless `empty`.
     pub blocks: [[Block<S>; N]; N],
-    /// Stiffness of the points of a patch with respect to their gradient vectors.
+    /// Stiffness of the points of a patch with respect to their gradient vectors; in the end the tangent by pairs of
+    /// corners.
     pub(super) forms: [Block<S>; MOST_PAIRS],
+    /// Whether nothing has been added.
+    pub empty: bool,
 }
 
 /// The most gradient vectors of a patch: two at 4 x 4 points, three for a solid.
 pub(super) const MOST_GRADIENTS: usize = 48;
 
-/// The most pairs of gradient vectors at the points of a patch: 15 for the curvature at 3 x 3 points.
-const MOST_PAIRS: usize = 135;
+/// The most pairs of gradient vectors at the points of a patch, 135 for the curvature at 3 x 3 points, and the tangent of
+/// 16 vectors, 160 blocks.
+const MOST_PAIRS: usize = 160;
 
 impl<S: Simd, const N: usize> Totals<S, N> {
     /// Zeros.
@@ -97,16 +102,19 @@ impl<S: Simd, const N: usize> Tangent<S, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let none = [[Lanes::splat(simd, 0.0); 3]; 3];
-        Self { blocks: [[none; N]; N], forms: [none; MOST_PAIRS] }
+        Self { blocks: [[none; N]; N], forms: [none; MOST_PAIRS], empty: true }
     }
 
-    /// Back to zeros.
+    /// Adds what the stiffness of the points in the first `count` of `forms` makes.
     #[inline(always)]
-    pub fn clear(&mut self, simd: S) {
-        let none = [[Lanes::splat(simd, 0.0); 3]; 3];
-        for b in 0..N {
-            self.blocks[b][..=b].fill(none);
+    pub(super) fn add_moments(&mut self, moments: &Moments, count: usize) {
+        let Self { blocks, forms, empty } = self;
+        if *empty {
+            moments.add::<S, N, true>(&mut forms[..count], blocks);
+        } else {
+            moments.add::<S, N, false>(&mut forms[..count], blocks);
         }
+        *empty = false;
     }
 }
 
@@ -155,8 +163,8 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
                 forces.0[g * D..(g + 1) * D].copy_from_slice(&force);
             }
             patch.add_forces(&forces.0, &mut totals.force);
-            if let Some(Tangent { forms, blocks }) = tangent.as_deref_mut() {
-                patch.moments.add(&mut forms[..D * (D + 1) / 2 * patch.points], blocks);
+            if let Some(tangent) = tangent.as_deref_mut() {
+                tangent.add_moments(&patch.moments, D * (D + 1) / 2 * patch.points);
             }
         }
     }

@@ -3,7 +3,7 @@
 //!
 //! An element is data. `tables` holds what congruent parameters share (shape functions at the samples, the projection),
 //! `constants` what congruent reference shapes share (`eps_0` and `W`; `classes` finds them), `kernel` turns both into
-//! energy, force and tangent of several elements at once, and `block` does so for all elements of a body. `thin` makes
+//! energy, force and tangent of several elements at once, and `block` does so for any elements of a body. `thin` makes
 //! the tables of the thin elements, `full48` those of the fully parametrised ones, `kind` lists them all; another
 //! element is another file and another line there.
 
@@ -16,15 +16,17 @@ mod kernel;
 mod kind;
 mod moments;
 mod operations;
+mod pairs;
 mod patch;
 mod projected;
 mod projection;
 mod tables;
 mod thin;
 
-pub use block::{At, ElementBlock, Motion, Outcome, Want};
+pub use block::{At, ElementBlock, Motion, Portion, Want};
 pub(crate) use constants::Section;
 pub(crate) use kind::Variant;
 pub use kind::{Kind, NodalVector};
 pub use operations::Operations;
+pub use pairs::{tangent_place, tangent_size};
 pub use thin::Membrane;

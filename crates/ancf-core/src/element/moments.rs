@@ -82,10 +82,15 @@ impl Moments {
         9 * gradients * (gradients + 1) / 2 * 2 * self.side * line + 18 * self.entries.len()
     }
 
-    /// Adds the tangent that the stiffness of the points makes; `forms` has it for each pair of gradient vectors, point by
-    /// point, and is left with the moments.
+    /// Adds the tangent that the stiffness of the points makes to `blocks`, or sets these if they are `EMPTY`; `forms` has
+    /// the stiffness for each pair of gradient vectors, point by point, and is left with the moments.
     #[inline(always)]
-    pub fn add<S: Simd, const N: usize>(&self, forms: &mut [Block<S>], blocks: &mut [[Block<S>; N]; N]) {
+    pub fn add<S: Simd, const N: usize, const EMPTY: bool>(
+        &self,
+        forms: &mut [Block<S>],
+        blocks: &mut [[Block<S>; N]; N],
+    ) {
+        let none = [[forms[0][0][0].like(0.0); 3]; 3];
         for form in forms.chunks_exact_mut(self.side * self.side) {
             match self.side {
                 2 => self.fold::<S, 2, 4>(form),
@@ -97,7 +102,7 @@ impl Moments {
         for b in 0..N {
             for a in 0..=b {
                 let [straight, transposed] = self.ends[packed(a, b)].map(|end| end as usize);
-                let mut sum = blocks[b][a];
+                let mut sum = if EMPTY { none } else { blocks[b][a] };
                 for &(moment, factor) in &self.entries[begin..straight] {
                     let moment = &forms[moment as usize];
                     for i in 0..3 {

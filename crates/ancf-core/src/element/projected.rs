@@ -6,7 +6,7 @@ use crate::lanes::{Lanes, Vector, axpy};
 use crate::strain::{Form, Metric};
 
 use super::constants::Couplings;
-use super::kernel::{Batch, MOST_GRADIENTS, Tangent, Totals, point_constants};
+use super::kernel::{Batch, MOST_GRADIENTS, Sample, Tangent, Totals, point_constants};
 use super::patch::combination;
 use super::projection::{MODES, POINTS, Projection, Row};
 use super::tables::Samples;
@@ -32,26 +32,22 @@ pub(super) fn add<S: Simd, const N: usize>(
         *part = constants;
     }
 
-    let [mut strain, mut rate, mut missed, mut extrapolated] = [[[zero; C]; POINTS]; 4];
     let with_tangent = tangent.is_some();
     let mut at = [batch.sample::<Metric<S>, 2, C>(patch, 0, (), constants_of[0], with_tangent); POINTS];
-    for g in 0..POINTS {
-        if g > 0 {
-            at[g] = batch.sample::<Metric<S>, 2, C>(patch, g, (), constants_of[g], with_tangent);
-        }
-        (strain[g], rate[g], missed[g]) = (at[g].strain, at[g].rate, at[g].missed);
-        extrapolated[g] = at[g].extrapolated.unwrap_or(strain[g]);
+    for g in 1..POINTS {
+        at[g] = batch.sample::<Metric<S>, 2, C>(patch, g, (), constants_of[g], with_tangent);
     }
     let couplings = batch.couplings;
-    let strain = amplitudes(zero, projection, &strain);
+    let strain = amplitudes(zero, projection, &at, |sample| &sample.strain);
     let mut stress = conjugates(zero, couplings, weights, &strain);
     for k in 0..MODES {
         totals.energy[0] = (stress[k] * 0.5).mul_add(strain[k], totals.energy[0]);
     }
     if let Some(flow) = batch.flow {
-        let rate = amplitudes(zero, projection, &rate);
+        let rate = amplitudes(zero, projection, &at, |sample| &sample.rate);
+        let missed = amplitudes(zero, projection, &at, |sample| &sample.missed);
         let viscous = conjugates(zero, couplings, weights, &rate);
-        totals.add_rates(&stress, &viscous, &rate, &amplitudes(zero, projection, &missed));
+        totals.add_rates(&stress, &viscous, &rate, &missed);
         for k in 0..MODES {
             stress[k] = viscous[k].scale_add(flow.factor, stress[k]);
         }
@@ -60,7 +56,7 @@ pub(super) fn add<S: Simd, const N: usize>(
     let on_points = at_points(zero, projection, &stress);
     let mut geometric = on_points;
     if with_tangent && batch.previous.is_some() {
-        let strain = amplitudes(zero, projection, &extrapolated);
+        let strain = amplitudes(zero, projection, &at, |sample| sample.extrapolated.as_ref().unwrap_or(&sample.strain));
         geometric = at_points(zero, projection, &conjugates(zero, couplings, weights, &strain));
     }
     let mut forces = [[zero; 3]; MOST_GRADIENTS];
@@ -73,7 +69,7 @@ pub(super) fn add<S: Simd, const N: usize>(
     }
     patch.add_forces(&forces, &mut totals.force);
     if let Some(tangent) = tangent {
-        patch.moments.add(&mut tangent.forms[..3 * POINTS], &mut tangent.blocks);
+        tangent.add_moments(&patch.moments, 3 * POINTS);
         let mut vectors = [[zero; 3]; 2 * POINTS];
         for g in 0..POINTS {
             vectors[2 * g..2 * g + 2].copy_from_slice(&at[g].gradients);
@@ -117,18 +113,19 @@ fn add_material<S: Simd, const N: usize>(
     }
 }
 
-/// The generalised strains.
+/// The generalised strains of one of the strains of each sample.
 #[inline(always)]
 fn amplitudes<S: Simd, const N: usize>(
     zero: Lanes<S>,
     projection: &Projection<N>,
-    strain: &[[Lanes<S>; C]; POINTS],
+    at: &[Sample<S, 2, C>; POINTS],
+    strain: impl Fn(&Sample<S, 2, C>) -> &[Lanes<S>; C],
 ) -> [Lanes<S>; MODES] {
     let mut amplitudes = [zero; MODES];
     for (amplitude, mode) in amplitudes.iter_mut().zip(&projection.modes) {
         let mut sum = zero;
         for &(g, weight) in &mode.basis {
-            sum = strain[g][mode.component].scale_add(weight, sum);
+            sum = strain(&at[g])[mode.component].scale_add(weight, sum);
         }
         *amplitude = sum;
     }

@@ -3,6 +3,8 @@
 //! Membrane strains of a bent element contain polynomials that its nodal coordinates cannot keep at zero. Their L2
 //! projection, component by component, on spaces that the element can control removes the locking.
 
+use nalgebra::DMatrix;
+
 use crate::quadrature::Rule;
 
 use super::tables::Samples;
@@ -92,5 +94,46 @@ impl<const N: usize> Projection<N> {
             modes.iter().enumerate().map(row).filter(|row| !row.gradients.is_empty()).collect()
         });
         Self { modes, rows }
+    }
+
+    /// The matrix on generalised strains that multiplies the parts of `E_xx` that are not linear in y, and those of
+    /// `E_yy` that are not linear in x, by a factor.
+    pub fn reduction(factor: f64) -> DMatrix<f64> {
+        let points = Rule::Gauss(4).points();
+        // A strain that is linear along the four point functions, in their coefficients.
+        let linear = |i: usize, j: usize| {
+            let [(x, p), (y, q)] = [points[i], points[j]];
+            (p * q).sqrt() * (1.0 + 3.0 * (2.0 * x - 1.0) * (2.0 * y - 1.0))
+        };
+        DMatrix::from_fn(MODES, MODES, |k, l| {
+            let same = if k == l { 1.0 } else { 0.0 };
+            if k.max(l) >= 16 || k / 4 != l / 4 {
+                return same;
+            }
+            factor * same + (1.0 - factor) * linear(k % 4, l % 4)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reduction_keeps_what_is_linear() {
+        let points = Rule::Gauss(4).points();
+        let coefficients = |f: fn(f64) -> f64| {
+            nalgebra::DVector::from_fn(MODES, |k, _| {
+                let (x, weight) = points[k % 4];
+                if k < 16 { weight.sqrt() * f(x) } else { f64::from(k as u32) }
+            })
+        };
+        let reduction = Projection::<12>::reduction(0.3);
+        let linear = coefficients(|x| 2.0 - 5.0 * x);
+        assert!((&reduction * &linear - &linear).amax() < 1e-13);
+        // A Legendre polynomial, with nothing linear in it.
+        let mut rough = coefficients(|x| 6.0 * x * x - 6.0 * x + 1.0);
+        rough.rows_mut(16, MODES - 16).fill(0.0);
+        assert!((&reduction * &rough - 0.3 * &rough).amax() < 1e-13);
     }
 }

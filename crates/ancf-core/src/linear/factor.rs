@@ -1,7 +1,7 @@
 //! Factorisation L D L^T of a symmetric sparse matrix and solution of linear systems with it.
 
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use faer::MatMut;
 use rayon::prelude::*;
@@ -61,7 +61,9 @@ pub struct Factorization {
     pattern: Arc<Pattern>,
     tree: Tree,
     factor: Vec<f64>,
-    updates: Vec<f64>,
+    /// Working memory of the top, and that of subtrees for each thread.
+    shared: Vec<f64>,
+    stacks: Mutex<Vec<Vec<f64>>>,
     solution: Solution,
     valid: bool,
 }
@@ -78,15 +80,15 @@ impl Factorization {
     ///
     /// [`LinearError::TooLarge`] when the memory does not suffice.
     pub fn new(pattern: Arc<Pattern>) -> Result<Self, LinearError> {
-        let tree = Tree::new(&pattern)?;
+        let tree = Tree::new(&pattern);
         let zeros = |length: usize| {
-            let mut numbers = Vec::new();
-            numbers.try_reserve_exact(length).map_err(|_| LinearError::TooLarge { n: pattern.n() })?;
-            numbers.resize(length, 0.0);
-            Ok(numbers)
+            Vec::<f64>::new().try_reserve_exact(length).map_err(|_| LinearError::TooLarge { n: pattern.n() })?;
+            // Zeros that the system hands out when they are first touched, which the threads do.
+            Ok(vec![0.0; length])
         };
-        let (factor, updates) = (zeros(tree.size())?, zeros(tree.workspace)?);
-        Ok(Self { pattern, tree, factor, updates, solution: Solution::default(), valid: false })
+        let (factor, shared) = (zeros(tree.size())?, zeros(tree.shared)?);
+        let stacks = Mutex::new(Vec::new());
+        Ok(Self { pattern, tree, factor, shared, stacks, solution: Solution::default(), valid: false })
     }
 
     /// The pattern the values must have.
@@ -120,26 +122,32 @@ impl Factorization {
             let column = self.pattern.col_ptr().partition_point(|&start| start <= place) - 1;
             return Err(LinearError::NotFinite { column });
         }
-        let Self { pattern, tree, factor, updates, .. } = self;
+        let Self { pattern, tree, factor, shared, stacks, .. } = self;
+        let stacks = &*stacks;
         let work = Work { pattern, tree, values };
 
-        let mut tasks = Vec::with_capacity(tree.regions.len());
-        let (mut factors, mut memory) = (factor.as_mut_slice(), updates.as_mut_slice());
-        for (fronts, region) in tree.subtrees.windows(2).zip(tree.regions.windows(2)) {
+        let mut tasks = Vec::with_capacity(tree.results.len());
+        let (mut factors, mut results) = (factor.as_mut_slice(), shared.as_mut_slice());
+        for (fronts, places) in tree.subtrees.windows(2).zip(tree.results.windows(2)) {
             let size: usize = tree.fronts[fronts[0]..fronts[1]].iter().map(Front::size).sum();
             let (own, rest) = factors.split_at_mut(size);
-            let (updates, others) = memory.split_at_mut(region[1] - region[0]);
-            tasks.push((fronts[0]..fronts[1], own, region[0], updates));
-            (factors, memory) = (rest, others);
+            let (result, others) = results.split_at_mut(places[1] - places[0]);
+            tasks.push((fronts[0]..fronts[1], own, result));
+            (factors, results) = (rest, others);
         }
-        let subtree = |(fronts, factor, begin, updates): (Range<usize>, &mut [f64], usize, &mut [f64])| {
+        let subtree = |(fronts, factor, result): (Range<usize>, &mut [f64], &mut [f64])| {
+            let taken = stacks.lock().expect("no thread panics with it").pop();
+            let mut stack = taken.unwrap_or_else(|| vec![0.0; tree.stack]);
             let mut rest = factor;
             let mut negative = 0;
-            for f in fronts {
+            let root = fronts.end - 1;
+            for f in fronts.start..root {
                 let (panel, others) = rest.split_at_mut(tree.fronts[f].size());
-                negative += work.front(f, panel, updates, begin, false)?;
+                negative += work.front(f, panel, &mut stack, None, false)?;
                 rest = others;
             }
+            negative += work.front(root, rest, &mut stack, Some(result), false)?;
+            stacks.lock().expect("no thread panics with it").push(stack);
             Ok(negative)
         };
         let outcomes: Vec<Result<usize, LinearError>> = if tasks.len() < 2 {
@@ -150,7 +158,7 @@ impl Factorization {
         let mut negative = outcomes.into_iter().sum::<Result<usize, _>>()?;
         for f in tree.top() {
             let (panel, others) = factors.split_at_mut(tree.fronts[f].size());
-            negative += work.front(f, panel, updates, 0, tree.fronts[f].work() > SHARED)?;
+            negative += work.front(f, panel, shared, None, tree.fronts[f].work() > SHARED)?;
             factors = others;
         }
         self.valid = true;
@@ -186,30 +194,34 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Assembles and eliminates a front; `updates` is the working memory from `begin` on. Returns the number of its
-    /// negative pivots.
+    /// Assembles and eliminates a front; `memory` has its place and the updates of its children. Its own update goes to
+    /// `result`, or stays at its place. Returns the number of its negative pivots.
     fn front(
         &self,
         f: usize,
         panel: &mut [f64],
-        updates: &mut [f64],
-        begin: usize,
+        memory: &mut [f64],
+        result: Option<&mut [f64]>,
         shared: bool,
     ) -> Result<usize, LinearError> {
         let tree = self.tree;
         let front = &tree.fronts[f];
         let (rows, columns, below) = (front.rows(), front.columns.len(), front.below);
-        let (before, rest) = updates.split_at_mut(front.update - begin);
-        let (own, after) = rest.split_at_mut(front.workspace());
-        let (update, scratch) = own.split_at_mut(below * below);
+        let size = if result.is_some() { front.scratch() } else { front.workspace() };
+        let (before, rest) = memory.split_at_mut(front.place);
+        let (own, after) = rest.split_at_mut(size);
+        let (update, scratch) = match result {
+            Some(result) => (result, own),
+            None => own.split_at_mut(front.update_size()),
+        };
         let children = || {
             tree.children[front.children.clone()].iter().map(|&child| {
                 let child = &tree.fronts[child];
-                let memory = match child.update < front.update {
-                    true => &before[child.update - begin..],
-                    false => &after[child.update - front.update - front.workspace()..],
+                let memory = match child.update < front.place {
+                    true => &before[child.update..],
+                    false => &after[child.update - front.place - size..],
                 };
-                (&memory[..child.below * child.below], &tree.runs[child.runs.clone()])
+                (&memory[..child.update_size()], &tree.runs[child.runs.clone()])
             })
         };
 

@@ -4,14 +4,17 @@
 //! from it. From then on only values change: assembly refills an array laid out as the pattern,
 //! [`Factorization::factorize`] and [`Factorization::solve`] work in storage that was allocated once.
 
+mod elimination;
 mod error;
 mod factor;
 mod front;
 mod gmres;
 mod ordering;
+mod panel;
 mod pattern;
 mod solve;
 mod sparse;
+mod supernodes;
 #[cfg(test)]
 mod testing;
 mod tree;
@@ -22,3 +25,4 @@ pub use gmres::gmres;
 pub use ordering::order;
 pub use pattern::Pattern;
 pub use sparse::SymmetricMatrix;
+pub(crate) use sparse::multiply_add;

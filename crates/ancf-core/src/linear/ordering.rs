@@ -3,7 +3,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::amd;
 
-use super::tree::Elimination;
+use super::elimination::Elimination;
 use super::{LinearError, Pattern};
 
 /// Order in which to eliminate the nodes of a mesh: entry k is the node that comes k-th.
@@ -54,7 +54,7 @@ fn work(graph: &Pattern, order: &[usize]) -> Result<f64, LinearError> {
         .flat_map(|i| graph.rows(i).iter().map(move |&j| [i, j]))
         .map(|edge| edge.map(|node| place[node]))
         .collect();
-    Ok(Elimination::new(&Pattern::from_groups(n, &edges)?)?.work())
+    Ok(Elimination::new(&Pattern::from_groups(n, &edges)?).work())
 }
 
 fn minimum_degree(graph: &Pattern) -> Result<Vec<usize>, LinearError> {

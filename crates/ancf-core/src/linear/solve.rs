@@ -2,12 +2,10 @@
 
 use std::ops::Range;
 
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{solve_unit_lower_triangular_in_place, solve_unit_upper_triangular_in_place};
-use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par};
+use pulp::Arch;
 use rayon::prelude::*;
 
+use super::panel;
 use super::tree::{Front, Tree};
 
 /// Factors with fewer entries are solved with on one thread.
@@ -33,7 +31,7 @@ impl Solution {
         if self.parts.len() < size {
             self.parts.resize(size, 0.0);
         }
-        let solver = Solver { tree, factor, count };
+        let solver = Solver { arch: Arch::new(), tree, factor, count };
         let top = tree.top();
         let split = tree.fronts.get(top.start).map_or(tree.vector(), |front| front.vector) * count;
         let (below, above) = self.parts[..size].split_at_mut(split);
@@ -54,6 +52,7 @@ impl Solution {
 }
 
 struct Solver<'a> {
+    arch: Arch,
     tree: &'a Tree,
     factor: &'a [f64],
     count: usize,
@@ -82,9 +81,8 @@ impl<'a> Solver<'a> {
     }
 
     /// The columns of a front in the factor: unit lower triangle with D on its diagonal, and the rows below.
-    fn panel(&self, front: &Front) -> (MatRef<'a, f64>, MatRef<'a, f64>) {
-        let values = &self.factor[front.factor..front.factor + front.size()];
-        MatRef::from_column_major_slice(values, front.rows(), front.columns.len()).split_at_row(front.columns.len())
+    fn panel(&self, front: &Front) -> &'a [f64] {
+        &self.factor[front.factor..front.factor + front.size()]
     }
 
     /// Solves with L; `below` are the parts of the subtrees that the top continues.
@@ -116,10 +114,7 @@ impl<'a> Solver<'a> {
                     }
                 }
             }
-            let (lower, below) = self.panel(front);
-            let (mut first, rest) = MatMut::from_column_major_slice_mut(own, rows, count).split_at_row_mut(columns);
-            solve_unit_lower_triangular_in_place(lower, first.rb_mut(), Par::Seq);
-            matmul(rest, Accum::Add, below, first.rb(), -1.0, Par::Seq);
+            panel::forward(self.arch, self.panel(front), own, rows);
         }
     }
 
@@ -147,15 +142,7 @@ impl<'a> Solver<'a> {
                     }
                 }
             }
-            let (lower, below) = self.panel(front);
-            let (mut first, rest) = MatMut::from_column_major_slice_mut(own, rows, count).split_at_row_mut(columns);
-            for k in 0..columns {
-                for c in 0..count {
-                    first[(k, c)] /= lower[(k, k)];
-                }
-            }
-            matmul(first.rb_mut(), Accum::Add, below.transpose(), rest.rb(), -1.0, Par::Seq);
-            solve_unit_upper_triangular_in_place(lower.transpose(), first, Par::Seq);
+            panel::backward(self.arch, self.panel(front), own, rows);
         }
     }
 }

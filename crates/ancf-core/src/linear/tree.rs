@@ -1,45 +1,10 @@
-//! The assembly tree of a factorisation: which columns are eliminated together, and what follows from that.
+//! The assembly tree of a factorisation: its fronts, where their rows and entries are, and their working memory.
 
 use std::ops::Range;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::linalg::cholesky::simplicial::{
-    prefactorize_symbolic_cholesky, prefactorize_symbolic_cholesky_scratch,
-};
-
-use super::{LinearError, Pattern};
-
-/// Elimination tree of a pattern and the number of entries in each column of its factor.
-///
-/// # Source
-///
-/// Davis, Direct Methods for Sparse Linear Systems (2006), chapter 4.
-pub(super) struct Elimination {
-    /// The column whose elimination needs this one's first; `None` at a root.
-    pub parent: Vec<Option<usize>>,
-    /// Entries of each column, the diagonal included.
-    pub counts: Vec<usize>,
-}
-
-impl Elimination {
-    pub fn new(pattern: &Pattern) -> Result<Self, LinearError> {
-        let n = pattern.n();
-        // faer analyses the upper triangle
-        let upper = pattern.lower().transpose().to_col_major().map_err(|_| LinearError::TooLarge { n })?;
-        let scratch = prefactorize_symbolic_cholesky_scratch::<usize>(n, pattern.nnz());
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| LinearError::TooLarge { n })?;
-        let (mut tree, mut counts) = (vec![0; n], vec![0; n]);
-        let stack = MemStack::new(&mut memory);
-        let tree = prefactorize_symbolic_cholesky(&mut tree, &mut counts, upper.as_ref(), stack);
-        let parent = tree.into_inner().iter().map(|&parent| usize::try_from(parent).ok()).collect();
-        Ok(Self { parent, counts })
-    }
-
-    /// Multiplications of the numeric factorisation, up to a constant factor.
-    pub fn work(&self) -> f64 {
-        self.counts.iter().map(|&count| (count as f64).powi(2)).sum()
-    }
-}
+use super::elimination::Elimination;
+use super::supernodes::Supernodes;
+use super::{Pattern, front};
 
 /// Numbers that follow each other in two arrays.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +31,9 @@ pub(super) struct Front {
     pub entries: Range<usize>,
     /// Where its part of the factor begins.
     pub factor: usize,
-    /// Where its update to the parent begins in the working memory.
+    /// Where the memory begins that it needs while it is eliminated.
+    pub place: usize,
+    /// Where its update to the parent begins.
     pub update: usize,
     /// Where its part of a vector begins.
     pub vector: usize,
@@ -88,22 +55,27 @@ impl Front {
         work(self.columns.len(), self.below)
     }
 
-    /// Working memory while it is eliminated: the update and a scaled copy of a block of columns.
+    /// Numbers of its update.
+    pub fn update_size(&self) -> usize {
+        self.below * self.below
+    }
+
+    /// Numbers of a scaled copy of a block of columns.
+    pub fn scratch(&self) -> usize {
+        self.rows() * self.columns.len().min(front::BLOCK)
+    }
+
+    /// Working memory while it is eliminated, its update first.
     pub fn workspace(&self) -> usize {
-        self.below * self.below + self.rows() * self.columns.len().min(super::front::BLOCK)
+        self.update_size() + self.scratch()
     }
 }
 
 /// Operations to eliminate `columns` columns with `below` rows more.
-fn work(columns: usize, below: usize) -> f64 {
+pub(super) fn work(columns: usize, below: usize) -> f64 {
     let (k, m) = (columns as f64, below as f64);
     k * m * m + k * k * m + k * k * k / 3.0
 }
-
-/// Subtrees with less work than this are not worth a task of their own.
-const TASK: f64 = 4e6;
-/// No task has more than this share of the work.
-const SHARE: f64 = 1.0 / 24.0;
 
 /// The fronts of a factorisation: first disjoint subtrees that are independent of each other, then what joins them.
 ///
@@ -121,20 +93,22 @@ pub(super) struct Tree {
     pub children: Vec<usize>,
     pub runs: Vec<Run>,
     pub entries: Vec<Run>,
-    /// Numbers in the working memory of an elimination.
-    pub workspace: usize,
-    /// Where the working memory of each subtree begins, and the end of the last one.
-    pub regions: Vec<usize>,
+    /// Numbers in the working memory of a subtree.
+    pub stack: usize,
+    /// Numbers in the working memory of the top, which begins with the updates of the subtrees.
+    pub shared: usize,
+    /// Where the update of each subtree begins there, and the end of the last one.
+    pub results: Vec<usize>,
 }
 
 impl Tree {
-    pub fn new(pattern: &Pattern) -> Result<Self, LinearError> {
-        let mut supernodes = Supernodes::new(&Elimination::new(pattern)?);
+    pub fn new(pattern: &Pattern) -> Self {
+        let mut supernodes = Supernodes::new(&Elimination::new(pattern));
         supernodes.merge();
         let mut tree = supernodes.arrange(pattern);
         tree.place(pattern);
         tree.plan();
-        Ok(tree)
+        tree
     }
 
     /// Entries of the factor.
@@ -155,49 +129,22 @@ impl Tree {
     /// Finds the rows of each front, where they are in its parent, and where the entries of the matrix are.
     fn place(&mut self, pattern: &Pattern) {
         let n = pattern.n();
-        let mut place = vec![0; n];
+        let mut place = vec![0_u32; n];
         for (k, &column) in self.order.iter().enumerate() {
-            place[column] = k;
+            place[column] = k as u32;
         }
-        let mut front_of = vec![0; n];
-        for (f, front) in self.fronts.iter().enumerate() {
-            front_of[front.columns.clone()].fill(f);
-        }
-        // Entries of the matrix by the front that eliminates them.
-        let mut count = vec![0; self.fronts.len() + 1];
-        let entry = |column: usize, row: usize| {
-            let (a, b) = (place[column], place[row]);
-            (a.min(b), a.max(b))
-        };
-        for column in 0..n {
-            for &row in pattern.rows(column) {
-                count[front_of[entry(column, row).0] + 1] += 1;
-            }
-        }
-        for f in 0..self.fronts.len() {
-            count[f + 1] += count[f];
-        }
-        let mut next = count.clone();
-        let mut entries = vec![(0, 0, 0); pattern.nnz()];
-        for column in 0..n {
-            for (k, &row) in pattern.rows(column).iter().enumerate() {
-                let (first, second) = entry(column, row);
-                let f = front_of[first];
-                entries[next[f]] = (pattern.col_ptr()[column] + k, first as u32, second as u32);
-                next[f] += 1;
-            }
-        }
-
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); self.fronts.len()];
         let mut local = vec![0; n];
         let mut seen_in = vec![usize::MAX; n];
         let (mut factor, mut vector) = (0, 0);
         for f in 0..self.fronts.len() {
             let Front { columns, children, .. } = self.fronts[f].clone();
-            let own = &entries[count[f]..count[f + 1]];
             let mut below = Vec::new();
-            let of_children = self.children[children.clone()].iter().flat_map(|&child| &rows[child]);
-            for &row in own.iter().map(|entry| &entry.2).chain(of_children) {
+            // What couples with a column and is eliminated later stays later: it is above it in the tree.
+            let own = &self.order[columns.clone()];
+            let of_columns = own.iter().flat_map(|&column| pattern.rows(column)).map(|&row| place[row]);
+            let of_children = self.children[children.clone()].iter().flat_map(|&child| &rows[child]).copied();
+            for row in of_columns.chain(of_children) {
                 let i = row as usize;
                 if i >= columns.end && seen_in[i] != f {
                     seen_in[i] = f;
@@ -216,9 +163,11 @@ impl Tree {
             }
             let height = columns.len() + below.len();
             let begin = self.entries.len();
-            let places = own
-                .iter()
-                .map(|&(slot, column, row)| (slot, (column as usize - columns.start) * height + local[row as usize]));
+            let places = own.iter().enumerate().flat_map(|(k, &column)| {
+                let slots = pattern.col_ptr()[column]..;
+                let (place, local) = (&place, &local);
+                slots.zip(pattern.rows(column)).map(move |(slot, &row)| (slot, k * height + local[place[row] as usize]))
+            });
             join(&mut self.entries, places);
             let front = &mut self.fronts[f];
             front.below = below.len();
@@ -230,31 +179,34 @@ impl Tree {
         }
     }
 
-    /// Gives each update a place in the working memory.
+    /// Gives each update a place: in the stack of the thread that eliminates a subtree, and those that subtrees hand on and
+    /// all above in memory that the threads share.
     fn plan(&mut self) {
         let mut memory = Memory::default();
-        self.regions = vec![0];
-        let mut results = Vec::new();
+        self.results = vec![0];
         for k in 1..self.subtrees.len() {
-            let mut own = Memory { blocks: Vec::new(), begin: memory.end, end: memory.end };
-            for f in self.subtrees[k - 1]..self.subtrees[k] {
-                self.place_update(f, &mut own);
+            let root = self.subtrees[k] - 1;
+            let mut stack = Memory::default();
+            for f in self.subtrees[k - 1]..root {
+                self.place_update(f, self.fronts[f].workspace(), self.fronts[f].update_size(), &mut stack);
             }
-            results.extend(own.blocks);
-            memory.end = own.end;
-            self.regions.push(memory.end);
+            self.place_update(root, self.fronts[root].scratch(), 0, &mut stack);
+            self.stack = self.stack.max(stack.end);
+            let size = self.fronts[root].update_size();
+            self.fronts[root].update = if size > 0 { memory.take(size) } else { memory.end };
+            self.results.push(memory.end);
         }
-        memory.blocks = results;
         for f in self.top() {
-            self.place_update(f, &mut memory);
+            self.place_update(f, self.fronts[f].workspace(), self.fronts[f].update_size(), &mut memory);
         }
-        self.workspace = memory.end;
+        self.shared = memory.end;
     }
 
-    fn place_update(&mut self, f: usize, memory: &mut Memory) {
-        let front = &mut self.fronts[f];
-        front.update = memory.take(front.workspace());
-        memory.shrink(front.update, front.below * front.below);
+    /// Places a front that needs so much memory while it is eliminated, and so much until it has been added to its parent.
+    fn place_update(&mut self, f: usize, size: usize, kept: usize, memory: &mut Memory) {
+        let place = memory.take(size);
+        memory.shrink(place, kept);
+        (self.fronts[f].place, self.fronts[f].update) = (place, place);
         for &child in &self.children[self.fronts[f].children.clone()] {
             memory.shrink(self.fronts[child].update, 0);
         }
@@ -277,14 +229,13 @@ fn join(runs: &mut Vec<Run>, pairs: impl Iterator<Item = (usize, usize)>) {
 #[derive(Default)]
 struct Memory {
     blocks: Vec<Range<usize>>,
-    begin: usize,
     end: usize,
 }
 
 impl Memory {
     /// Takes the first gap that is large enough.
     fn take(&mut self, size: usize) -> usize {
-        let mut begin = self.begin;
+        let mut begin = 0;
         let mut k = 0;
         while let Some(block) = self.blocks.get(k)
             && block.start < begin + size
@@ -305,157 +256,6 @@ impl Memory {
             self.blocks.remove(k);
         } else {
             self.blocks[k].end = begin + size;
-        }
-    }
-}
-
-/// A tree of sets of columns.
-struct Supernodes {
-    columns: Vec<Vec<usize>>,
-    below: Vec<usize>,
-    parent: Vec<Option<usize>>,
-    zeros: Vec<usize>,
-}
-
-impl Supernodes {
-    /// Chains of columns with the same rows.
-    fn new(elimination: &Elimination) -> Self {
-        let Elimination { parent, counts } = elimination;
-        let n = parent.len();
-        let mut children = vec![0; n];
-        parent.iter().flatten().for_each(|&parent| children[parent] += 1);
-        let mut of_column = vec![usize::MAX; n];
-        let mut columns: Vec<Vec<usize>> = Vec::new();
-        for column in 0..n {
-            if of_column[column] != usize::MAX {
-                continue;
-            }
-            let mut chain = vec![column];
-            let mut last = column;
-            while let Some(next) = parent[last]
-                && children[next] == 1
-                && counts[next] + 1 == counts[last]
-            {
-                chain.push(next);
-                last = next;
-            }
-            chain.iter().for_each(|&column| of_column[column] = columns.len());
-            columns.push(chain);
-        }
-        let last = |chain: &Vec<usize>| *chain.last().expect("a column");
-        let below = columns.iter().map(|chain| counts[last(chain)] - 1).collect();
-        let parent = columns.iter().map(|chain| parent[last(chain)].map(|column| of_column[column])).collect();
-        let zeros = vec![0; columns.len()];
-        Self { columns, below, parent, zeros }
-    }
-
-    /// Merges supernodes with their parents where that adds few zeros: fewer and larger fronts are faster.
-    fn merge(&mut self) {
-        // A parent's first column comes after its children's, so children are met first.
-        for child in 0..self.columns.len() {
-            let Some(parent) = self.parent[child] else { continue };
-            let (k, m) = (self.columns[child].len(), self.below[child]);
-            let (kp, mp) = (self.columns[parent].len(), self.below[parent]);
-            let zeros = self.zeros[child] + self.zeros[parent] + k * (kp + mp - m);
-            let size = (k + kp) * (k + kp + 1) / 2 + (k + kp) * mp;
-            let most = match k + kp {
-                0..=16 => 0.5,
-                17..=48 => 0.25,
-                49..=96 => 0.1,
-                _ => 0.03,
-            };
-            if zeros as f64 <= most * size as f64 {
-                let mut columns = std::mem::take(&mut self.columns[child]);
-                columns.append(&mut self.columns[parent]);
-                self.columns[parent] = columns;
-                self.zeros[parent] = zeros;
-            }
-        }
-        // Children of what was merged belong to what it was merged with.
-        for s in (0..self.columns.len()).rev() {
-            if let Some(parent) = self.parent[s]
-                && self.columns[parent].is_empty()
-            {
-                self.parent[s] = self.parent[parent];
-            }
-        }
-    }
-
-    /// Numbers the columns: subtree after subtree, in each children before parents.
-    fn arrange(self, pattern: &Pattern) -> Tree {
-        let n = self.columns.len();
-        let is_front = |s: &usize| !self.columns[*s].is_empty();
-        let mut children = vec![Vec::new(); n];
-        let mut total: Vec<f64> = (0..n).map(|s| work(self.columns[s].len(), self.below[s])).collect();
-        for s in (0..n).filter(is_front) {
-            if let Some(parent) = self.parent[s] {
-                children[parent].push(s);
-                total[parent] += total[s];
-            }
-        }
-        let all: f64 = (0..n).filter(|s| is_front(s) && self.parent[*s].is_none()).map(|s| total[s]).sum();
-        let most = (SHARE * all).max(TASK);
-        let is_small = |s: usize| total[s] <= most || all <= 4.0 * TASK;
-
-        let (mut sequence, mut subtrees) = (Vec::new(), vec![0]);
-        for root in (0..n).filter(is_front) {
-            if is_small(root) && self.parent[root].is_none_or(|parent| !is_small(parent)) {
-                postorder(root, &children, &mut sequence);
-                subtrees.push(sequence.len());
-            }
-        }
-        sequence.extend((0..n).filter(|s| is_front(s) && !is_small(*s)));
-
-        let mut number = vec![usize::MAX; n];
-        sequence.iter().enumerate().for_each(|(f, &s)| number[s] = f);
-        let mut order = Vec::with_capacity(pattern.n());
-        let mut all_children = Vec::new();
-        let fronts = sequence
-            .iter()
-            .map(|&s| {
-                let start = order.len();
-                order.extend(&self.columns[s]);
-                let first = all_children.len();
-                all_children.extend(children[s].iter().map(|&child| number[child]));
-                Front {
-                    columns: start..order.len(),
-                    below: self.below[s],
-                    children: first..all_children.len(),
-                    parent: self.parent[s].map(|parent| number[parent]),
-                    runs: 0..0,
-                    entries: 0..0,
-                    factor: 0,
-                    update: 0,
-                    vector: 0,
-                }
-            })
-            .collect();
-        Tree {
-            order,
-            fronts,
-            subtrees,
-            children: all_children,
-            runs: Vec::new(),
-            entries: Vec::new(),
-            workspace: 0,
-            regions: Vec::new(),
-        }
-    }
-}
-
-/// Appends a tree, children first.
-fn postorder(root: usize, children: &[Vec<usize>], sequence: &mut Vec<usize>) {
-    let mut stack = vec![(root, 0)];
-    while let Some((s, next)) = stack.last_mut() {
-        match children[*s].get(*next) {
-            Some(&child) => {
-                *next += 1;
-                stack.push((child, 0));
-            }
-            None => {
-                sequence.push(*s);
-                stack.pop();
-            }
         }
     }
 }

@@ -6,12 +6,13 @@ mod failure;
 mod forces;
 mod newton;
 mod options;
+mod reuse;
 mod scale;
 
 pub use failure::Failure;
-pub(crate) use newton::Kept;
 pub use newton::{Newton, Report};
 pub use options::{Options, Variant};
+pub(crate) use reuse::{Kept, Reuse, Trial};
 
 /// The coefficients of the problem.
 #[derive(Clone, Copy, Debug, Default)]

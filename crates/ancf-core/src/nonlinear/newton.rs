@@ -6,6 +6,7 @@ use crate::observe::Observer;
 
 use super::convergence::Convergence;
 use super::forces::{Forces, Tangent};
+use super::reuse::{Kept, Reuse};
 use super::scale::scales;
 use super::{Failure, Options, Problem, Variant};
 
@@ -41,17 +42,8 @@ pub struct Newton {
     previous: Vec<f64>,
     /// Coordinates at the start.
     begin: Vec<f64>,
-    kept: Option<Kept>,
+    reuse: Reuse,
     iterations: usize,
-}
-
-/// The factorisation that the system holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Kept {
-    /// The factors of inertia and stiffness, and the rate of the velocities, that it was made with.
-    pub coefficients: [f64; 3],
-    /// Negative pivots.
-    pub negative: usize,
 }
 
 impl Newton {
@@ -65,7 +57,7 @@ impl Newton {
             correction: vec![0.0; n],
             previous: vec![0.0; n],
             begin: vec![0.0; n],
-            kept: None,
+            reuse: Reuse::default(),
             iterations: 0,
         }
     }
@@ -75,9 +67,9 @@ impl Newton {
         self.iterations
     }
 
-    /// The factorisation that the next solution may use.
-    pub(crate) fn kept(&self) -> Option<Kept> {
-        self.kept
+    /// The factorisation that the next solution may use, and what is known about reuse.
+    pub(crate) fn reuse(&self) -> Reuse {
+        self.reuse
     }
 
     /// `q - q*` of the last solution, without what rounding of the coordinates `q` takes of it. With it inertia balances
@@ -86,9 +78,9 @@ impl Newton {
         &self.forces.from_origin
     }
 
-    /// Makes the next solution use the factorisation that the system holds, or none.
-    pub(crate) fn keep(&mut self, kept: Option<Kept>) {
-        self.kept = kept;
+    /// Makes the next solution go on from there, with the factorisation that the system holds.
+    pub(crate) fn resume(&mut self, reuse: Reuse) {
+        self.reuse = reuse;
     }
 
     /// Largest change between two states, relative to the size of the model.
@@ -194,7 +186,8 @@ impl Newton {
         self.begin.copy_from_slice(q);
         let begin = problem.t;
         let coefficients = problem.coefficients();
-        self.kept = self.kept.filter(|kept| reuse && kept.coefficients == coefficients);
+        self.reuse.begin(reuse, coefficients);
+        let mut trusted = true;
         self.forces.begin(&problem, q);
         let mut convergence = Convergence::new(tolerance);
         for iteration in 1..=max_iterations {
@@ -202,7 +195,7 @@ impl Newton {
                 return Err(Failure::Stopped);
             }
             self.iterations += 1;
-            let fresh = self.kept.is_none();
+            let fresh = self.reuse.kept.is_none();
             let tangent = fresh.then_some(Tangent { previous: extrapolate.then_some(self.previous.as_slice()) });
             let strain = self.forces.evaluate(system, &problem, q, tangent);
             let finite = self.forces.residual.iter().all(|r| r.is_finite());
@@ -213,7 +206,7 @@ impl Newton {
                 Ok(inertia) => Ok(inertia.negative),
                 Err(error) => Err(Failure::from_linear(error, iteration, |row| system.describe(row))),
             };
-            let negative = self.kept.map_or_else(|| factorize(system), |kept| Ok(kept.negative))?;
+            let negative = self.reuse.kept.map_or_else(|| factorize(system), |kept| Ok(kept.negative))?;
             let mut size = f64::INFINITY;
             if finite {
                 system.solve(&self.forces.residual, &mut self.correction);
@@ -230,19 +223,31 @@ impl Newton {
                 q.copy_from_slice(&self.begin);
                 problem.t = begin;
                 self.forces.begin(&problem, q);
-                (self.kept, extrapolate, reuse) = (None, false, false);
+                self.reuse.failed();
+                (self.reuse.kept, extrapolate, reuse) = (None, false, false);
                 convergence.restart();
                 continue;
             }
             // One that did not serve shows that the solution is far: from here on each iteration has its own.
-            reuse &= fresh || convergence.contracts(size);
+            let contracts = convergence.contracts(size);
+            if !(fresh || contracts) {
+                self.reuse.failed();
+                reuse = false;
+            }
+            if fresh && iteration == 1 {
+                trusted = reuse && self.reuse.try_first();
+            }
             let converged = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
             self.previous.copy_from_slice(q);
             self.forces.correct(&self.correction, q);
             extrapolate = mip;
-            let keep = reuse || converged && self.options.reuse;
-            self.kept = keep.then_some(Kept { coefficients, negative });
+            // Where the first factorisation is not trusted, the next one is that has shown to contract.
+            let keep = reuse && (trusted || iteration > 1 && contracts) || converged && self.options.reuse;
+            self.reuse.kept = keep.then_some(Kept { coefficients, negative });
             if converged {
+                if !fresh {
+                    self.reuse.served();
+                }
                 // The energy was evaluated one correction before the solution.
                 let energy = strain.total() - dot(&self.correction, &self.forces.internal);
                 let growth = convergence.growth;

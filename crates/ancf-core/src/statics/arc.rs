@@ -45,6 +45,8 @@ pub(super) struct Walk {
     length: f64,
     shortest: f64,
     longest: f64,
+    /// Largest change of the load factor along the tangent.
+    most: f64,
 }
 
 impl Walk {
@@ -56,8 +58,20 @@ impl Walk {
         let rate = path.rate(&path.at.q.clone(), path.at.load.t);
         let size = metric.length(&rate);
         let tangent = Tangent::new(rate, longest.signum() / size);
-        let [longest, shortest] = [longest.abs(), shortest].map(|change| size * change);
-        Self { metric, tangent, length: longest.min(size * first), shortest, longest }
+        let most = longest.abs();
+        let [longest, shortest] = [most, shortest].map(|change| size * change);
+        Self { metric, tangent, length: longest.min(size * first), shortest, longest, most }
+    }
+
+    /// The same without a longest step, but for the change of the load factor along the tangent: where a path turns away
+    /// from its first direction it may have to go much farther for the same load.
+    pub fn bounded_by_load(self) -> Self {
+        Self { longest: f64::INFINITY, ..self }
+    }
+
+    /// Makes the next step shorter.
+    pub fn shorten(&mut self, share: f64) {
+        self.length *= share;
     }
 
     /// Makes a step of the path; it ends where a limit point or the target is met.
@@ -67,7 +81,7 @@ impl Walk {
             match self.advance(path, share * self.length, target, observer) {
                 Ok(Step::Accepted { iterations, turn, end }) => {
                     let growth = (ITERATIONS / iterations as f64).powi(2).min(share * TURN[1] / turn).clamp(0.5, 2.0);
-                    self.length = (growth * self.length).min(self.longest);
+                    self.length = (growth * self.length).min(self.longest).min(self.most / end.t.abs());
                     self.tangent = end;
                     return Ok(());
                 }

@@ -13,26 +13,39 @@ use super::path::{Path, Point, difference};
 
 /// Steps by arc length in which stability must be lost or the load must get on.
 const MOST_STEPS: usize = 50;
-/// Load, relative to the step that failed, after which it has got on.
+/// Load, relative to the first step, after which it has got on; the same where the step that failed, four times as long, has
+/// seen an unstable state.
 const PASSED: f64 = 16.0;
+const PASSED_UNSTABLE: f64 = 4.0;
+/// Jumps that may come to nothing: close to a bifurcation the branches are close together and the motion almost at rest.
+const MOST_JUMPS: usize = 3;
+/// The step after a jump that came to nothing, relative to the one before.
+const FURTHER: f64 = 0.1;
 /// Iterations of a motion.
 const MOST_MOTION: usize = 1500;
 /// Disturbance along the mode that has lost its stiffness, relative to the size of the model.
 const DISTURBANCE: f64 = 1e-3;
 
-/// Gets the load on from a point where a step to `length` further on has failed: along the path, or by a jump.
+/// Gets the load on from a point where a step has failed, of which `length` is a part: along the path, or by a jump.
+///
+/// Where an `unstable` state has been seen on the way, no step is longer than `length`: it could step over the stretch of
+/// the path that is not stable.
 pub(super) fn pass(
     path: &mut Path<'_>,
-    length: f64,
-    target: f64,
+    [length, target]: [f64; 2],
+    unstable: bool,
     options: &Options,
     observer: &mut dyn Observer,
 ) -> Result<(), Failure> {
     path.linearize()?;
     let start = path.at.load.t;
     let direction = (target - start).signum();
-    let mut walk = Walk::new(path, [PASSED * length * direction, length, options.min_step]);
+    let longest = if unstable { length } else { PASSED * length };
+    let passed = if unstable { PASSED_UNSTABLE } else { PASSED } * length;
+    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]).bounded_by_load();
     let (mut stable, mut farthest) = (path.at.q.clone(), start);
+    let mut stuck = None;
+    let mut jumps = 0;
     for _ in 0..MOST_STEPS {
         walk.step(path, target, observer)?;
         path.steps += 1;
@@ -40,9 +53,18 @@ pub(super) fn pass(
             farthest = path.at.load.t;
         }
         if path.at.negative_pivots > 0 {
-            return jump(path, &stable, farthest, observer);
+            match jump(path, &stable, farthest, observer) {
+                Err(failure @ Failure::Unstable { .. }) if jumps < MOST_JUMPS => stuck = Some(failure),
+                result => return result,
+            }
+            jumps += 1;
+            walk.shorten(FURTHER);
+            continue;
         }
-        if path.at.load.t == target || (path.at.load.t - start).abs() > PASSED * length {
+        if let Some(failure) = stuck {
+            return Err(failure);
+        }
+        if path.at.load.t == target || (path.at.load.t - start).abs() > passed {
             return Ok(());
         }
         stable.copy_from_slice(&path.at.q);

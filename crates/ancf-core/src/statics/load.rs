@@ -100,8 +100,10 @@ fn reach(
             rate
         });
         let predicted: Vec<f64> = rate_here.iter().map(|v| v * length).collect();
+        let mut slid = false;
         let result = match advance(path, to, &change, &predicted, observer) {
             Err(failure) if from.held == 0.0 && failure.is_divergence() && length <= LONGEST_SLIDE * whole => {
+                slid = true;
                 slide(path, to, &change, &predicted, observer).map(|()| AFTER_SLIDE)
             }
             result => result,
@@ -129,8 +131,9 @@ fn reach(
                     failed = PATIENCE - 1;
                 }
                 lost = to.t;
-                if from.held == 0.0 && (failed == PATIENCE || *step < options.min_step) {
-                    jump::pass(path, *step, target.t, options, observer)?;
+                let unstable = slid && matches!(failure, Failure::Unstable { .. });
+                if from.held == 0.0 && (unstable || failed == PATIENCE || *step < options.min_step) {
+                    jump::pass(path, [*step, target.t], unstable, options, observer)?;
                     *step = GROWN * length;
                     (rate, failed) = (None, 0);
                     observer.reached(path.at.load.t);

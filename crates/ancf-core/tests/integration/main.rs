@@ -1,6 +1,7 @@
 //! Integration tests: one module a subject, one program, so that the crate is linked once.
 
 mod architecture;
+mod assembly;
 mod common;
 mod conformance;
 mod dynamics;

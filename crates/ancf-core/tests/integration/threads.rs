@@ -2,7 +2,7 @@
 //!
 //! Reference: the run on one thread.
 //! Goal: equal bits of all states, not equality to rounding.
-//! Mesh: 16 x 16 elements: four tasks for the elements, five for the columns of the tangent.
+//! Mesh: 16 x 16 elements, five parts.
 
 use ancf_core::dynamics::Method;
 use ancf_core::element::Membrane;
