@@ -6,10 +6,11 @@ use crate::report::Counts;
 
 use super::Options;
 use super::checkpoint::{Checkpoint, Memory};
+use super::collapse::Middles;
 use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
 use super::fingerprint::Fingerprint;
-use super::method::Integrator;
+use super::method::{Integrator, Method};
 use super::stability::highest_frequency;
 use super::state::Instantaneous;
 
@@ -28,6 +29,7 @@ pub(super) struct Simulation<'a> {
     options: &'a Options,
     integrator: Box<dyn Integrator>,
     controller: Controller,
+    middles: Middles,
     now: Instantaneous,
     next: Instantaneous,
     error: Vec<f64>,
@@ -53,6 +55,7 @@ impl<'a> Simulation<'a> {
             }
         }
         Self {
+            middles: Middles::new(equations.system.model()),
             equations,
             options,
             integrator: options.method.integrator(),
@@ -167,7 +170,16 @@ impl<'a> Simulation<'a> {
     fn try_step(&mut self, observer: &dyn Observer) -> Result<(), Failure> {
         self.integrator.step(&mut self.equations, &self.now, &mut self.next, &mut self.error, observer)?;
         let finite = self.next.q.iter().chain(&self.next.v).chain(&self.next.a).all(|x| x.is_finite());
-        if finite { Ok(()) } else { Err(Failure::Overflow { t: self.next.t }) }
+        if !finite {
+            return Err(Failure::Overflow { t: self.next.t });
+        }
+        // A rigid body may make half a turn in a step; a step that is forced shows all that comes of it.
+        let forced = matches!(self.options.steps, Steps::Fixed { force: true, .. });
+        if forced || self.options.method == Method::Rigid {
+            return Ok(());
+        }
+        let place = self.middles.collapsed(self.equations.system.model(), &self.now.q, &self.next.q);
+        place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, t: self.next.t }))
     }
 
     /// A step within the tolerances that does not go beyond `target`.

@@ -99,6 +99,14 @@ pub enum Failure {
         /// End of the step, s.
         t: f64,
     },
+    /// An element is turned inside out in a step.
+    #[error("elements collapse at {place} in the step to t = {t:.6e} s")]
+    Collapsed {
+        /// The middle of the element.
+        place: String,
+        /// End of the step, s.
+        t: f64,
+    },
     /// An explicit step, or the shortest that error control may take, is not stable.
     #[error("the step {step:.4e} s is above the limit {limit:.4e} s of the explicit method at t = {t:.4e} s")]
     StepAboveLimit {
@@ -155,6 +163,10 @@ impl Failure {
             }
             Self::NoPotential { .. } => "loads that keep their direction, or a dynamic run",
             Self::Overflow { .. } => "a smaller step, or an implicit method with error control (rtol)",
+            Self::Collapsed { .. } => {
+                "smaller steps or error control (rtol); check loads, thickness and units: the material may not be able to \
+                 carry the load"
+            }
             Self::StepAboveLimit { .. } => {
                 "a step below the limit, error control (rtol), or an implicit method; force = true to see what happens"
             }

@@ -1,0 +1,95 @@
+//! Elements that collapse in a step.
+
+use nalgebra::Vector3;
+
+use crate::mesh::Place;
+use crate::model::{Body, Model};
+
+/// Area, relative to the larger one at both ends of a step, that counts as none.
+const NO_AREA: f64 = 1e-3;
+
+/// The middle of an element, relative to its sides.
+const MIDDLE: [f64; 2] = [0.5, 0.5];
+
+/// The middles of all elements of a model, where collapse is looked for: gradients at nodes fold and unfold in soft plates
+/// whose elements keep their areas, as at a pinned corner.
+pub(super) struct Middles {
+    /// Of each body: `N_x` and `N_y` at the middle of each of its elements.
+    tables: Vec<[Vec<f64>; 2]>,
+}
+
+impl Middles {
+    pub fn new(model: &Model) -> Self {
+        let tables = |body: &Body| {
+            let [_, x, y, ..] = body.shape(0, MIDDLE).1;
+            [x, y]
+        };
+        Self { tables: model.bodies().iter().map(tables).collect() }
+    }
+
+    /// The first element that is turned inside out on the way between two states, in words.
+    ///
+    /// The energy of an element stays finite when its surface shrinks to nothing, so that a step may lead through that and
+    /// out on the other side, where no material has been. There the area vector `r_x x r_y` vanishes on the straight way
+    /// from one state to the other. Where the surface only turns, it does so nowhere, but for half a turn in one step.
+    pub fn collapsed(&self, model: &Model, from: &[f64], to: &[f64]) -> Option<String> {
+        for (body, tables) in model.bodies().iter().zip(&self.tables) {
+            for element in 0..body.grid().elements() {
+                let tangents = |q: &[f64]| {
+                    let mut tangents = [Vector3::zeros(); 2];
+                    for (index, vector) in body.element_vectors(element).enumerate() {
+                        let vector = Vector3::from_column_slice(&q[3 * vector..][..3]);
+                        for (tangent, table) in tangents.iter_mut().zip(tables) {
+                            *tangent += table[index] * vector;
+                        }
+                    }
+                    tangents
+                };
+                if is_turned_inside_out(tangents(from), tangents(to)) {
+                    let [first, _, last, _] = body.grid().cell(element).map(|node| body.grid().parameters(node));
+                    let middle = Place::Point([0, 1].map(|i| 0.5 * (first[i] + last[i])));
+                    return Some(format!("{middle} of body \"{}\"", body.name()));
+                }
+            }
+        }
+        None
+    }
+}
+
+/// Whether the area vector passes by zero closely, and points backwards then.
+fn is_turned_inside_out(from: [Vector3<f64>; 2], to: [Vector3<f64>; 2]) -> bool {
+    let change = [to[0] - from[0], to[1] - from[1]];
+    // The area vector on the way, from s = 0 to 1: n + s (n_1 + s n_2).
+    let n = from[0].cross(&from[1]);
+    let n_1 = change[0].cross(&from[1]) + from[0].cross(&change[1]);
+    let n_2 = change[0].cross(&change[1]);
+    let [c, b, a] = [n.dot(&n), n.dot(&n_1), n.dot(&n_2)];
+    if c + b + a >= 0.0 {
+        return false;
+    }
+    // The zero of c + b s + a s^2, which is positive at 0 and negative at 1.
+    let s = 2.0 * c / (-b + (b * b - 4.0 * a * c).sqrt());
+    let larger = n.norm().max(to[0].cross(&to[1]).norm());
+    (n + s * (n_1 + s * n_2)).norm() < NO_AREA * larger
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn collapse_is_told_from_turning() {
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let turned = |angle: f64| [x * angle.cos() + z * angle.sin(), y];
+        for angle in [0.1, 1.0, 2.0, 3.0] {
+            assert!(!is_turned_inside_out(turned(0.3), turned(0.3 + angle)), "{angle}");
+        }
+        for stretch in [-0.1, -1.0, -30.0] {
+            assert!(is_turned_inside_out([x, y], [x * stretch, y]), "{stretch}");
+            assert!(is_turned_inside_out([x, y], [x, y * stretch + x]), "{stretch}");
+        }
+        assert!(!is_turned_inside_out([x, y], [x * 0.1, y * 3.0]));
+        let spun = |angle: f64| [x * angle.cos() + y * angle.sin(), y * angle.cos() - x * angle.sin()];
+        assert!(!is_turned_inside_out(spun(0.3), spun(3.3)));
+    }
+}
