@@ -75,7 +75,7 @@ def statics() -> Iterator[Case]:
     moment = ancf.Moment(at="edge:x1", per_length=2e-3)
     yield Case(scene("foil rolled", foil, [WALL], [moment], (0.5, 0.05), run), ((32, 6), (48, 12)))
     yield Case(
-        scene("dome pressed", dome, [end], [ancf.Pressure(pressure=-2e4)], (0.4, 0.8), run), ((24, 24), (32, 32))
+        scene("dome pressed", dome, [end], [ancf.Pressure(pressure=-2e4)], (0.4, 0.8), run), ((24, 48), (32, 64))
     )
 
 

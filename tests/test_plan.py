@@ -4,6 +4,7 @@ import json
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,17 @@ import pytest
 import ancf
 from ancf import cli
 from ancf.plan import pilots
+from ancf.plan.ascent import Ascent
 from ancf.plan.cost import Costs, Rates
 from ancf.plan.errors import Side, distance, scales
 from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Rung, Stepping, coarsest
 from ancf.plan.planner import LEAST, MOST, PROPORTION
 from ancf.plan.rigid import deflection
+from ancf.plan.search import Search
 from ancf.plan.shear import shear
 from ancf.plan.symmetry import halved
+from ancf.plan.timing import Timing
+from ancf.solve import solve
 
 STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
 RUBBER = ancf.Material(E=1e6, nu=0.3, density=1000.0)
@@ -165,6 +170,36 @@ def test_threads_are_those_that_take_the_least_predicted_time() -> None:
     assert Costs(dict.fromkeys(THIN, rates) | {CONTINUOUS: rates}, threads=1).threads(Choice(many)) == 1
     # An iteration takes 25 s there on all threads.
     assert costs.steps(many, 2.0, explicit=False) == pytest.approx(1.0 + 2.0 * 3.0 * 25.0)
+
+
+class _Formula(pilots.Pilots):
+    """Pilots whose values are 1, an error in space and, on fine meshes only, one of implicit steps."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        (nx, ny), stepping = choice.rung.divisions[0], choice.stepping
+        assert stepping is not None
+        length = 0.0 if stepping.step is None else stepping.step / 1e-3
+        value = 1.0 + 0.3 / nx**2 + 0.3 / ny**2 + (0.016 * length**2 if nx * ny > 4 else 0.0)
+        seconds = nx * ny * (1e-3 * max(nx, ny) if stepping.explicit else 5e-3 / length)
+        result: Any = SimpleNamespace(seconds={"setup": 0.0})
+        return pilots.Pilot(choice, result, [np.array([[0.0], [value]])], seconds, "ok")
+
+
+def test_steps_that_are_too_long_on_finer_meshes_are_shortened_there() -> None:
+    model = cantilever()
+    formula = _Formula(ancf.Scene("", model, ancf.Dynamic(until=0.1, step=1e-3)), ["A"], np.inf, 1)
+    linear: Any = dict.fromkeys(("iteration", "iteration_shared", "force", "force_shared"), (1.0, 10000.0))
+    rates = Rates(elements=(1, 10_000), setup=(1e-9, 1e-9), **linear)
+    coarse = Rung(THIN[0], ((2, 2),))
+    steppings = [Stepping("verlet", rtol=1e-2), Stepping("esdirk", step=1e-3)]
+    timings = [Timing(stepping, 0.0, formula.run(Choice(coarse, stepping))) for stepping in steppings]
+    costs = Costs(dict.fromkeys((*THIN, CONTINUOUS), rates), threads=1)
+    search = Search(formula, costs, (THIN[0], CONTINUOUS), ((1, 1),), 1e-2, timings)
+    assert Ascent(search).up([THIN[0], CONTINUOUS])
+    # Explicit steps are cheaper on coarse meshes only.
+    assert {pilot.choice.stepping for pilot in formula.done} > set(steppings)
+    assert abs(search.exact[0][1, 0] - 1.0) < 1e-2
+    assert search.own < 1e-2
 
 
 def test_a_soft_plate_is_no_rigid_body() -> None:
@@ -344,6 +379,69 @@ def test_ctrl_c_ends_a_plan(scene: Path, monkeypatch: pytest.MonkeyPatch, comman
     monkeypatch.setattr(pilots, "solve", interrupt)
     assert cli.main([command[0], str(scene), *command[1:]]) == 130
     assert not Path("flight-plan").exists()
+
+
+@pytest.mark.parametrize("command", [["plan"], ["run", "-o", "plate-plan"]])
+def test_an_interrupted_plan_leaves_what_is_known(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: list[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    ancf.Scene("", cantilever(), ancf.Static()).write("plate.toml")
+    runs = iter(range(20))
+
+    def interrupt(*arguments: Any, **options: Any) -> ancf.Result:
+        if next(runs) == 18:
+            raise KeyboardInterrupt
+        return solve(*arguments, **options)
+
+    monkeypatch.setattr(pilots, "solve", interrupt)
+    assert cli.main([command[0], "plate.toml", "--tol", "1e-3", "--threads", "1", *command[1:]]) == 130
+    assert "the plan was interrupted; plate-plan has the best found" in capsys.readouterr().err
+    # Nothing is run after it.
+    assert next(runs) == 19
+    told = json.loads(Path("plate-plan/plan.json").read_text())
+    found = ancf.load_scene("plate-plan/scene.toml").solve()
+    assert isinstance(found, ancf.Result)
+    values = [found.probes[name].value for name in "AB"]
+    exact = [ancf.solve_static(cantilever((24, 8), "thin48")).probes[name].value for name in "AB"]
+    assert distance(values, exact, scales(exact)) < told["error"]
+
+
+def test_a_pilot_that_slides_and_jumps_ends_when_its_time_is_up() -> None:
+    """A soft vault that buckles under its weight: it would take minutes on this mesh."""
+    vault = ancf.Cylinder(
+        radius=0.3,
+        angle=(0.0, 2.4),
+        length=(0.0, 0.6),
+        divisions=(4, 4),
+        thickness=3e-3,
+        material=ancf.Material(E=1e6, nu=0.45, density=1100.0),
+    )
+    ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
+    probes = [ancf.Probe(name="A", at=(1.2, 0.0))]
+    model = ancf.Model(bodies={"vault": vault}, supports=ends, loads=[WEIGHT], probes=probes)
+    scene = ancf.Scene("", model, ancf.Static(load_factors=[0.25, 0.5, 1.0]))
+    pilot = pilots.Pilots(scene, ["A"], np.inf, 1).run(Choice(Rung(CONTINUOUS, ((32, 16),))), 0.5)
+    assert pilot.outcome == "slower than others"
+    # A plan, too, tells what it knows when its time is up.
+    plan = ancf.plan(model, run=ancf.Static(load_factors=[0.25, 0.5, 1.0]), tol=1e-3, budget=0.5, threads=1)
+    assert not plan.converged
+    assert "--budget" in " ".join(plan.reasons)
+
+
+def test_one_element_between_clamped_edges_does_not_move_and_is_left_out() -> None:
+    ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
+    # Without symmetry, of which half an element would be free.
+    push = [ancf.LineLoad(at="edge:y1", per_length=(0.0, 0.3, 2.0))]
+    sheets = [blown((0.4, 0.3), divisions, ends) for divisions in ((4, 4), (16, 12))]
+    models = [
+        ancf.Model(bodies=m.bodies, supports=ends, loads=push, probes=[ancf.Probe(name="A", at=(0.3, 0.3))])
+        for m in sheets
+    ]
+    plan = ancf.plan(models[0], run=ancf.Static(), tol=3e-2)
+    exact = ancf.solve_static(models[1]).probes["A"].value
+    assert plan.converged
+    assert distance([plan.result.probes["A"].value], [exact], scales([exact])) < 3e-2
 
 
 def test_the_mirror_holds_all_that_an_element_has() -> None:

@@ -33,8 +33,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return complain(error, WRONG_INPUT)
     except RecursionError:
         return complain("the scene is nested too deeply", WRONG_INPUT)
-    except KeyboardInterrupt:
-        return complain("interrupted", INTERRUPTED)
+    except KeyboardInterrupt as stopped:
+        return complain(str(stopped) or "interrupted", INTERRUPTED)
     except Exception as error:
         # Libraries turn an interruption into errors of their own: a film's writer does.
         if was_stopped():

@@ -143,12 +143,12 @@ class SolveError(_WithResult, RuntimeError):
 
 
 class Interrupted(_WithResult, KeyboardInterrupt):
-    """A run that was stopped from outside, as by Ctrl-C.
+    """A run or a plan that was stopped from outside, as by Ctrl-C.
 
     Parameters
     ----------
     message : str
         Where it stopped.
-    result : Result or ModalResult
-        Every state up to there.
+    result : Result, ModalResult or Plan
+        Every state up to there, or what was known by then.
     """

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ancf.commands import NOT_PROMISED, OK, complain, positive
+from ancf.errors import Interrupted
 from ancf.output import make_folder, remove_folders
 from ancf.plan import Plan, plan
 
@@ -81,16 +82,23 @@ def promise(found: Plan, folder: Path) -> int:
 
 
 def make_plan(options: argparse.Namespace, folder: Path) -> Plan:
-    """Plan a scene file and write the answer to a folder; nothing is left there if the plan fails."""
+    """Plan a scene file and write the answer to a folder, also that of an interrupted plan; nothing if it fails."""
     made = make_folder(folder)
     try:
         found = plan(options.scene, want=options.want, tol=options.tol, budget=options.budget, threads=options.threads)
+    except Interrupted as stopped:
+        _tell(stopped.result, options, folder)
+        raise Interrupted(f"{stopped}; {folder} has the best found", stopped.result) from stopped
     except BaseException:
         remove_folders(made)
         raise
+    _tell(found, options, folder)
+    return found
+
+
+def _tell(found: Plan, options: argparse.Namespace, folder: Path) -> None:
     found.write(folder)
     if not options.quiet:
         print(f"{found.scene.title or options.scene.stem}, planned")
         print(found)
         print(f"  Written to {folder}; to run it: ancf run {folder / 'scene.toml'} -o DIR", flush=True)
-    return found

@@ -73,11 +73,12 @@ def of_search(
         reasons.append(f"Refining {finest} along {where} changed {side.difference:.1g}, rate {rate}.")
     if not converged:
         slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
-        why = (
-            "differences hardly shrink as the mesh is refined, as at a singular point or where the motion is chaotic"
-            if slow
-            else "the budget (--budget) or the largest mesh was reached"
-        )
+        if pilots.interrupted:
+            why = "the plan was interrupted"
+        elif slow:
+            why = "differences hardly shrink with the mesh, as at a singular point or where the motion is chaotic"
+        else:
+            why = "the budget (--budget) or the largest mesh was reached"
         reasons.append(
             f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.2g}."
         )

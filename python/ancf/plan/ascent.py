@@ -13,6 +13,7 @@ from ancf.plan.errors import RATES, Side, distance, scales
 from ancf.plan.ladder import Choice, Family, Rung
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
+from ancf.plan.timing import SHARE
 
 BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
@@ -92,7 +93,9 @@ class Ascent:
             or climb.stalled > _PATIENCE
         ):
             climb.ended = True
-        elif self._run(rung).ok:
+            return
+        self._compare_steps(climb)
+        if self._run(rung).ok:
             before = climb.own
             self._learn(climb)
             climb.stalled = climb.stalled + 1 if climb.own > before * 2.0**-_STALLED else 0
@@ -111,17 +114,34 @@ class Ascent:
             stepping = pilot.choice.stepping
             if pilot.ok or stepping is None or self.search.pilots.left <= 0:
                 break
-            for index, timing in enumerate(self.search.timings):
-                if timing.stepping == stepping:
-                    shorter = replace(stepping, reuse=False) if stepping.reuse else stepping.tighter()
-                    self.search.allowed.insert(0, shorter)
-                    # Its cost is known from the pilot with the longer steps.
-                    again = self.search.pilots.run(Choice(timing.pilot.choice.rung, shorter))
-                    self.search.timings[index] = replace(
-                        timing, stepping=shorter, pilot=again if again.ok else timing.pilot
-                    )
+            self.search.shorten(stepping, replace(stepping, reuse=False) if stepping.reuse else stepping.tighter())
             pilot = self.search.run(rung)
         return pilot
+
+    def _compare_steps(self, climb: Climb) -> None:
+        """Before a rung is run with another stepping than the last one, see that the two agree there, or shorten it.
+
+        Steps that are short enough on the coarse mesh, on which they were found, may not be on a finer one, and then
+        the error in time would be taken for one in space.
+        """
+        last = climb.rung
+        for _ in range(_SHORTER):
+            stepping = self.search.stepping(climb.next)
+            if last is None or stepping is None:
+                return
+            known = [
+                self.search.pilots.known(Choice(last, other)) for other in self.search.allowed if other != stepping
+            ]
+            others = [pilot.values for pilot in known if pilot is not None]
+            if not others:
+                return
+            own = self.search.pilots.run(Choice(last, stepping), _AFFORDED * self.search.pilots.left)
+            if not own.ok:
+                return
+            scale = scales(own.values)
+            if min(distance(own.values, values, scale) for values in others) <= 2 * SHARE * self.search.tol:
+                return
+            self.search.shorten(stepping, stepping.tighter())
 
     def _reconsider(self, climb: Climb) -> None:
         """Go on with another family of the element where it is much nearer to what another element tells.
@@ -221,18 +241,24 @@ class Ascent:
         climb.own = max(climb.own - (1 - _TRUST) * removed, _TRUST * climb.own)
 
     def _confirmed(self, rung: Rung) -> bool:
-        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing."""
+        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing.
+
+        One of its families must agree, the one that is refined before those that may lock or be weak here.
+        """
         lead = self.search.lead
-        order = sorted(self.search.families, key=lambda family: family.element == rung.family.element)
+        scale = scales(lead.exact)
+        refined = {climb.family for climb in self.search.climbs}
+        order = sorted(self.search.families, key=lambda f: (f.element == rung.family.element, f not in refined))
+        agreed, nearest = max(_AGREED * self.search.tol, 3 * lead.own), np.inf
         for family in order:
-            if family == rung.family:
-                continue
-            pilot = self.search.run(replace(rung, family=family), 6 * self._seconds(rung))
-            if pilot.ok:
-                other = distance(pilot.values, lead.exact, scales(lead.exact))
-                if other > max(_AGREED * self.search.tol, 3 * lead.own):
-                    lead.own = max(lead.own, other / 2)
+            if nearest <= agreed or (nearest < np.inf and family.element == rung.family.element):
                 break
+            if family != rung.family:
+                pilot = self.search.run(replace(rung, family=family), 6 * self._seconds(rung))
+                if pilot.ok:
+                    nearest = min(nearest, distance(pilot.values, lead.exact, scale))
+        if agreed < nearest < np.inf:
+            lead.own = max(lead.own, nearest / 2)
         return lead.own <= BEST * self.search.tol
 
     def _seconds(self, rung: Rung) -> float:

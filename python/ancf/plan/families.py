@@ -16,6 +16,9 @@ def to_refine(search: Search) -> list[Family]:
     coarse, fine = (_of_families(search, factor) for factor in (1, 2))
     if not fine:
         return []
+    # On one element between clamped edges nothing moves.
+    for values in fine.values():
+        changes(values, search.pilots.want)
     scale = [max(sizes) for sizes in zip(*(scales(values) for values in fine.values()), strict=True)]
     doubts = {family: _doubt(family, coarse, fine, scale) for family in fine}
     elements = dict.fromkeys(family.element for family in fine)
@@ -32,7 +35,6 @@ def _of_families(search: Search, factor: int) -> dict[Family, Values]:
     for rung in rungs:
         pilot = search.run(rung, 3 * cheapest + 0.02)
         if pilot.ok:
-            changes(pilot.values, search.pilots.want)
             found[rung.family] = pilot.values
             cheapest = min(cheapest, pilot.seconds)
     return found

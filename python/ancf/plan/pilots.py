@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ancf.errors import InputError
+from ancf.errors import InputError, Interrupted
 from ancf.plan.cost import Costs
 from ancf.plan.ladder import Choice, apply
 from ancf.result import Result
@@ -82,6 +82,7 @@ class Pilots:
         self._started = self._clock()
         self._budget = budget
         self._done: dict[Choice, Pilot] = {}
+        self.interrupted = False
 
     @property
     def spent(self) -> float:
@@ -90,8 +91,8 @@ class Pilots:
 
     @property
     def left(self) -> float:
-        """Seconds of the budget that are left."""
-        return self._budget - self.spent
+        """Seconds of the budget that are left; none once the plan has been interrupted."""
+        return 0.0 if self.interrupted else self._budget - self.spent
 
     @property
     def done(self) -> list[Pilot]:
@@ -117,6 +118,11 @@ class Pilots:
         -------
         Pilot
             How it went.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            On Ctrl-C; what it had is not kept.
         """
         if choice in self._done and (self._done[choice].ok or self._done[choice].outcome != _SLOW):
             return self._done[choice]
@@ -160,6 +166,8 @@ class Pilots:
             return failed(_SLOW)
         except InputError as error:
             return failed(str(error))
+        except Interrupted as stopped:
+            raise KeyboardInterrupt from stopped
         seconds = clock() - start
         if result.status != "ok":
             return failed(result.reason)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ancf.errors import InputError, Mistake
+from ancf.errors import InputError, Interrupted, Mistake
 from ancf.model import Model
 from ancf.plan.answer import check_time, of_rigid, of_search
 from ancf.plan.ascent import Ascent
@@ -76,7 +76,9 @@ def plan(
     InputError
         If there is no such probe, it does not change, or the scene is none that can be planned.
     Interrupted
-        On Ctrl-C.
+        On Ctrl-C; `Interrupted.result` is the `Plan` that follows from the pilots so far.
+    KeyboardInterrupt
+        On Ctrl-C before anything follows from them.
     """
     scene = scene_of(scene, run)
     names = wanted(scene, want)
@@ -87,7 +89,10 @@ def plan(
         budget = MOST if written is None else min(max(PROPORTION * written, LEAST), MOST)
     pilots = Pilots(scene, names, budget, threads, costs)
     found = _planned(scene, pilots, costs, tol, max(written or budget, LEAST))
-    return replace(found, budget=budget, seconds_as_written=written)
+    found = replace(found, budget=budget, seconds_as_written=written)
+    if pilots.interrupted:
+        raise Interrupted("the plan was interrupted", found)
+    return found
 
 
 def _planned(scene: Scene, pilots: Pilots, costs: Costs, tol: float, worth: float) -> Plan:
@@ -99,12 +104,14 @@ def _planned(scene: Scene, pilots: Pilots, costs: Costs, tol: float, worth: floa
             return of_rigid(scene, pilots, rigid, max(bent), tol)
     part, mirrors = halved(scene)
     if mirrors:
-        found = _flexible(Pilots(part, pilots.want, pilots.left / 2, pilots.threads, costs), allowed, costs, tol, worth)
+        of_part = Pilots(part, pilots.want, pilots.left / 2, pilots.threads, costs)
+        found = _flexible(of_part, allowed, costs, tol, worth)
+        pilots.interrupted = of_part.interrupted
         off = _asymmetry(pilots, found, mirrors)
         sides = " and ".join("xy"[axis] for axis in mirrors)
         reason = f"The scene is symmetric across the middle of {sides}: the low half is enough"
         if off is None:
-            reasons = [*found.reasons, f"{reason} if it moves so; the budget did not suffice to run the whole."]
+            reasons = [*found.reasons, f"{reason} if it moves so; there was no time to run the whole."]
             return replace(found, reasons=reasons, converged=False, seconds=pilots.spent)
         if off <= _SYMMETRIC * tol:
             return replace(found, reasons=[*found.reasons, f"{reason}, to {off:.1g}."], seconds=pilots.spent)
@@ -131,13 +138,25 @@ def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: fl
     base = coarsest(scene.model)
     timings = _timings(pilots, allowed, base, tol) if isinstance(scene.run, Dynamic) else []
     search = Search(pilots, costs, allowed, base, tol, timings)
-    if not Ascent(search).up(to_refine(search)):
-        raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
+    try:
+        if not Ascent(search).up(to_refine(search)):
+            raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
+        descent = Descent(search, worth)
+        descent.down()
+        descent.lengthen()
+        descent.settle()
+        return _answer(search)
+    except KeyboardInterrupt:
+        if not any(climb.rung for climb in search.climbs):
+            raise
+        pilots.interrupted = True
+        return _answer(search)
+
+
+def _answer(search: Search) -> Plan:
+    """Choose from what a search has found, check it in time and tell."""
+    pilots = search.pilots
     scale = changes(search.exact, pilots.want)
-    descent = Descent(search, worth)
-    descent.down()
-    descent.lengthen()
-    descent.settle()
     chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
     in_space = search.observed()[chosen.choice]
     chosen, in_time = check_time(search, chosen, scale, search.tol - in_space)

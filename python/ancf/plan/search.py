@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -91,6 +91,17 @@ class Search:
         """Return the stepping of the same kind that was found on the coarse mesh, from which it was made longer."""
         same = (t.stepping for t in self.timings if t.stepping.like(stepping))
         return next(same, stepping)
+
+    def shorten(self, stepping: Stepping, shorter: Stepping) -> None:
+        """Take shorter steps in place of others; longer ones may still do on coarser meshes."""
+        self.allowed.remove(stepping)
+        self.allowed = [shorter, *self.allowed, stepping]
+        for index, timing in enumerate(self.timings):
+            if timing.stepping == stepping:
+                # Its cost is known from the pilot with the longer steps.
+                again = self.pilots.run(Choice(timing.pilot.choice.rung, shorter))
+                pilot = again if again.ok else timing.pilot
+                self.timings[index] = replace(timing, stepping=shorter, pilot=pilot)
 
     def predict_with(self, rung: Rung, timing: Timing) -> float:
         """Return the seconds of a rung with a stepping, from the pilot with it that is most like the rung."""
