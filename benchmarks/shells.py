@@ -1,6 +1,6 @@
 """Print the table of docs/shells.md: published shells, each solved by its scene file with nothing set by hand.
 
-Run it from any folder with ``python benchmarks/shells.py``; it takes some minutes. ``--plot DIR`` draws the deformed
+Run it from any folder with ``python benchmarks/shells.py``; it takes half a minute. ``--plot DIR`` draws the deformed
 shells as well, ``--quick`` leaves out the slowest; ``--variants`` prints the table of other elements, measures of
 curvature and meshes instead.
 """
