@@ -389,7 +389,9 @@ def statics(ours: Program, theirs: Program, effort: Effort) -> None:
         for membrane in ("lobatto", "projected"):
             a = ours("statics", effort.cantilever, membrane, threads=threads)
             what = "{} x {} cantilever, 30 N, `{}`".format(*effort.cantilever, membrane)
-            note = f"deflection {a['z']:.5f} and {b['z']:.5f} m; theirs: {b.get('load steps')} load steps, {newton} Newton"
+            note = (
+                f"deflection {a['z']:.5f} and {b['z']:.5f} m; theirs: {b.get('load steps')} load steps, {newton} Newton"
+            )
             row(what, f"s, {threads} thread{'s' if threads > 1 else ''}", a["seconds"], b["seconds"], note)
 
 

@@ -69,3 +69,25 @@ def test_a_leaning_column_is_followed_past_its_critical_load(ratio: float) -> No
 def test_all_scenes_are_valid() -> None:
     for path in SCENES.glob("*.toml"):
         assert ancf.load_scene(path).title
+
+
+def test_a_load_that_cannot_get_on_ends() -> None:
+    """A saddle, pinned at two sides and pressed far beyond its first snap: what is told is consistent."""
+    model = ancf.Model(
+        bodies={
+            "saddle": ancf.Surface(
+                position=lambda x, y: (x, y, 0.05 * (9 - x * x) - 0.05 * (9 - y * y)),
+                domain=((-3, 3), (-3, 3)),
+                divisions=(5, 5),
+                thickness=0.02384,
+                material=ancf.Material(E=2e7, nu=0.3),
+            )
+        },
+        supports=[ancf.Support(at="edge:x0", fix=["r"]), ancf.Support(at="edge:x1", fix=["r"])],
+        loads=[ancf.Force(at=(0, 0), force=(0, 0, -855.5))],
+    )
+    result = ancf.solve_static(model, throw=False)
+    assert len(result.jumps) >= 1
+    assert result.reached >= max(result.jumps)
+    if result.status == "failed":
+        assert "unstable" in result.reason

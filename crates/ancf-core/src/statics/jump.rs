@@ -26,11 +26,25 @@ const MOST_MOTION: usize = 1500;
 /// Disturbance along the mode that has lost its stiffness, relative to the size of the model.
 const DISTURBANCE: f64 = 1e-3;
 
-/// Gets the load on from a point where a step has failed, of which `length` is a part: along the path, or by a jump.
+/// Gets the load on from a point where a step has failed, of which `length` is a part: along the path, or by a jump; or
+/// leaves the path as it was.
 ///
 /// Where an `unstable` state has been seen on the way, no step is longer than `length`: it could step over the stretch of
 /// the path that is not stable.
 pub(super) fn pass(
+    path: &mut Path<'_>,
+    [length, target]: [f64; 2],
+    unstable: bool,
+    options: &Options,
+    observer: &mut dyn Observer,
+) -> Result<(), Failure> {
+    let (begin, work) = (path.at.clone(), path.work);
+    lead_on(path, [length, target], unstable, options, observer).inspect_err(|_| {
+        (path.at, path.work) = (begin, work);
+    })
+}
+
+fn lead_on(
     path: &mut Path<'_>,
     [length, target]: [f64; 2],
     unstable: bool,
@@ -52,7 +66,8 @@ pub(super) fn pass(
         if (path.at.load.t - farthest) * direction > 0.0 {
             farthest = path.at.load.t;
         }
-        if path.at.negative_pivots > 0 {
+        // A stable equilibrium at a smaller load lies beyond an unstable stretch that the step has passed over.
+        if path.at.negative_pivots > 0 || (farthest - path.at.load.t) * direction > 0.0 {
             match jump(path, &stable, farthest, observer) {
                 Err(failure @ Failure::Unstable { .. }) if jumps < MOST_JUMPS => stuck = Some(failure),
                 result => return result,
@@ -64,7 +79,7 @@ pub(super) fn pass(
         if let Some(failure) = stuck {
             return Err(failure);
         }
-        if path.at.load.t == target || (path.at.load.t - start).abs() > passed {
+        if path.at.load.t == target || (farthest - start) * direction > passed {
             return Ok(());
         }
         stable.copy_from_slice(&path.at.q);
@@ -74,7 +89,8 @@ pub(super) fn pass(
 
 /// Moves from the last point, which is not stable, to a stable one at load factor `t`, farther from `stable`.
 fn jump(path: &mut Path<'_>, stable: &[f64], t: f64, observer: &mut dyn Observer) -> Result<(), Failure> {
-    let negative = path.at.negative_pivots;
+    // At least one, where the step has passed over the unstable stretch.
+    let negative = path.at.negative_pivots.max(1);
     let metric = Metric::new(path);
     let away = difference(&path.at.q, stable);
     let q = disturbed(path, &metric, &away);

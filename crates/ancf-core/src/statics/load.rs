@@ -51,6 +51,9 @@ const MOST_SLIDE: usize = 60;
 const LONGEST_SLIDE: f64 = 0.3;
 /// Steps that fail one after the other before arc length is tried.
 const PATIENCE: usize = 3;
+/// How often arc length may lead on while the load gets on by less than a share of the way to the next load factor.
+const MOST_PASSES: usize = 20;
+const ONWARDS: f64 = 1e-2;
 
 /// Brings the loads that do not vanish at load factor 0 into equilibrium.
 pub(super) fn release(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
@@ -87,6 +90,8 @@ fn reach(
     let whole = (target.t - path.at.load.t).abs();
     // Where the last step that failed would have ended.
     let mut lost = f64::NAN;
+    // How often arc length has led on, and from where.
+    let (mut passes, mut begun) = (0, path.at.load.t);
     while path.at.load != target {
         let from = path.at.load;
         let left = (target.t - from.t).abs() + (target.held - from.held).abs();
@@ -133,6 +138,13 @@ fn reach(
                 lost = to.t;
                 let unstable = slid && matches!(failure, Failure::Unstable { .. });
                 if from.held == 0.0 && (unstable || failed == PATIENCE || *step < options.min_step) {
+                    if (from.t - begun).abs() > ONWARDS * whole {
+                        (passes, begun) = (0, from.t);
+                    }
+                    passes += 1;
+                    if passes > MOST_PASSES {
+                        return Err(failure);
+                    }
                     jump::pass(path, [*step, target.t], unstable, options, observer)?;
                     *step = GROWN * length;
                     (rate, failed) = (None, 0);

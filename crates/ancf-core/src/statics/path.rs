@@ -27,6 +27,7 @@ impl Load {
 }
 
 /// An equilibrium on the path.
+#[derive(Clone)]
 pub(super) struct Point {
     pub load: Load,
     pub q: Vec<f64>,
