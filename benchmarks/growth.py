@@ -118,6 +118,8 @@ def table(body: str, rows: tuple[int, ...]) -> None:
             f"{' | '.join(each)} | {found['total']:.3g} | {found['memory']:.0f} | {found['z']:.5f} |",
             flush=True,
         )
+    if len(runs) == 1:
+        return
     parts = ("assembly", "factorisation", "solve", "memory")
     fits = ", ".join(f"{part} {exponent(runs, part):.2f}" for part in parts)
     print(f"\nExponents of the growth, over the larger sizes: {fits}.")
