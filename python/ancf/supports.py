@@ -95,6 +95,11 @@ class Support(OnBody):
             raise InputError(Mistake(("fix",), "give either the coordinates to fix or clamp = true"))
         return self
 
+    @property
+    def moves(self) -> bool:
+        """Whether its motion is prescribed."""
+        return bool(self.translation or self.shake or self.rotation)
+
     def check_coordinates(self, element: str) -> None:
         """Raise `InputError` if the nodes of the element have no such coordinates."""
         vectors = NODAL_VECTORS[element]
@@ -107,7 +112,7 @@ class Support(OnBody):
 
     def add(self, core: _core.Model) -> None:
         """Add the support to the compiled model."""
-        if self.translation or self.shake or self.rotation:
+        if self.moves:
             shake, turn = self.shake, self.rotation
             core.move_support(
                 self.body,
