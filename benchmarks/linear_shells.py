@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
@@ -83,17 +83,9 @@ def scene(name: str) -> Callable[[Variant, Mesh], ancf.Model]:
         document = tomllib.loads((SCENES / f"{name}.toml").read_text(encoding="utf-8"))
         given = {key: value for key, value in variant._asdict().items() if value is not None}
         document["body"]["shell"] |= given | {"divisions": mesh}
-        if variant.element == "thin48":
-            for support in document["support"]:
-                support["fix"] += twists(support["at"], support["fix"])
         return ancf.Scene.of(document).model
 
     return make
-
-
-def twists(at: str, fix: Sequence[str]) -> list[str]:
-    """Return the components of r_xy that are zero at an edge because the gradient across it is fixed all along it."""
-    return [f"r_xy{item[3:]}" for item in fix if at.startswith("edge:") and item.startswith(f"r_{at[5]}")]
 
 
 def surface(
