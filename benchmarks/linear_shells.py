@@ -7,7 +7,6 @@ takes some seconds.
 from __future__ import annotations
 
 import argparse
-import re
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -16,12 +15,12 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from page import put
 
 import ancf
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENES = ROOT / "examples" / "linear_shells"
-PAGE = ROOT / "docs" / "linear-shells.md"
 
 FloatArray = NDArray[np.float64]
 Mesh = tuple[int, int]
@@ -207,11 +206,7 @@ def main() -> None:
     if not parser.parse_args().write:
         print(*table(), sep="\n")
         return
-    lines = "\n".join(table())
-    page = PAGE.read_text(encoding="utf-8")
-    marks = r"(<!-- linear -->\n).*?(<!-- /linear -->)"
-    page = re.sub(marks, lambda match: f"{match[1]}{lines}\n{match[2]}", page, flags=re.DOTALL)
-    PAGE.write_text(page, encoding="utf-8")
+    put("linear-shells.md", "linear", table())
 
 
 if __name__ == "__main__":

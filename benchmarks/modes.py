@@ -7,17 +7,14 @@ some seconds.
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import Literal, TypeAlias
 
 import numpy as np
+from page import put
 from scipy.linalg import eigh
 
 import ancf
-
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "modes.md"
 
 Element: TypeAlias = Literal["thin36", "thin48"]
 Row: TypeAlias = tuple[str, float, float]
@@ -187,11 +184,7 @@ def main() -> None:
         for line in table():
             print(line, flush=True)
         return
-    lines = "\n".join(table())
-    page = PAGE.read_text(encoding="utf-8")
-    marks = r"(<!-- modes -->\n).*?(<!-- /modes -->)"
-    page = re.sub(marks, lambda match: f"{match[1]}{lines}\n{match[2]}", page, flags=re.DOTALL)
-    PAGE.write_text(page, encoding="utf-8")
+    put("modes.md", "modes", table())
 
 
 if __name__ == "__main__":
