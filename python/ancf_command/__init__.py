@@ -15,8 +15,9 @@ def main() -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         from ancf.cli import main as run  # noqa: PLC0415  As above.
+
+        return run()
     except KeyboardInterrupt:
         if sys.stderr is not None:
             print("ancf: interrupted", file=sys.stderr)
         return 130
-    return run()
