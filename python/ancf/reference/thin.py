@@ -143,7 +143,8 @@ def projection(spaces: tuple[Space, Space, Space]) -> FloatArray:
     rule = square(gauss(4))
     samples = len(rule.weights)
     Pi = np.zeros((samples, 3, samples, 3))
-    products = np.polynomial.legendre.legvander2d(*(2 * rule.points.T - 1), [3, 3]).reshape(samples, 4, 4)
+    x, y = 2 * rule.points.T - 1
+    products = np.polynomial.legendre.legvander2d(x, y, [3, 3]).reshape(samples, 4, 4)
     for component, space in enumerate(spaces):
         basis = np.stack([products[:, p, q] for p, q in space], axis=1)
         moments = basis.T * rule.weights
