@@ -32,7 +32,7 @@ FINEST = {
     "twisted beam, out of it": (0.5, 0.5),
     "thin twisted beam, in the plane": (0.15, 0.15),
     "thin twisted beam, out of it": (0.1, 0.1),
-    "saddle, 1/1000": (0.75, 0.65),
+    "saddle, 1/1000": (0.75, 0.6),
     "saddle, 1/10000": (6.0, 2.1),
     "Raasch's hook": (4.6, 4.6),
 }

@@ -119,7 +119,7 @@ class Thin(Element):
 
         min(1, h^2 k^4 / (12 |K|)), K the mean Gaussian curvature of the reference: inextensional bending of a doubly
         curved surface is out of the element's reach in these parts, for waves of the wave number k and more. With l
-        the larger side, k is pi / l for bicubic functions and 1 / l for the incomplete quartic.
+        the larger side, k is 12^(1/4) / l for bicubic functions and 1 / l for the incomplete quartic.
         """
         rule = square(gauss(3))
         vectors = self._reference_vectors(rule)
@@ -127,7 +127,7 @@ class Thin(Element):
         xx, yy, xy = np.moveaxis(einsum("esvi,esi->esv", vectors[..., 2:, :], n), -1, 0)
         curvature = np.abs(((xx * yy - xy**2) / einsum("esi,esi->es", n, n) ** 2) @ rule.weights)
         with np.errstate(divide="ignore"):
-            bending = self.thickness**2 / 12 * ((np.pi if self._twist() else 1) / side) ** 4
+            bending = self.thickness**2 / 12 * ((12 if self._twist() else 1) / side**4)
             return np.asarray(np.minimum(1, bending / curvature[:, None, None]))
 
     def _twist(self) -> bool:

@@ -1,7 +1,5 @@
 //! The thin elements: membrane strain and curvature of a surface.
 
-use std::f64::consts::PI;
-
 use crate::quadrature::Rule;
 use crate::shape::{Polynomial, acm, hermite};
 
@@ -59,7 +57,7 @@ pub(crate) fn thin36(sides: [f64; 2], variant: Variant) -> Tables<12> {
 ///
 /// Dmitrochenko and Pogorelov (2003).
 pub(crate) fn thin48(sides: [f64; 2], variant: Variant) -> Tables<16> {
-    tables(sides, hermite(sides), variant, PI)
+    tables(sides, hermite(sides), variant, 12.0_f64.sqrt().sqrt())
 }
 
 /// The tables of a thin element with any shape functions; `followed` is for the [projection](Projection).
