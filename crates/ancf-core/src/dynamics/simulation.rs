@@ -111,6 +111,7 @@ impl<'a> Simulation<'a> {
 
     /// Integrates to the end.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
+        self.middles.begin(self.equations.system.model(), &self.now.q);
         let end = self.steps(observer);
         observer.checkpoint(&|states| self.checkpoint().to_bytes(states), true);
         if end.is_err() && !self.options.outputs.contains(&self.now.t) {
@@ -158,6 +159,7 @@ impl<'a> Simulation<'a> {
                 observer.state(state);
             }
             std::mem::swap(&mut self.now, &mut self.next);
+            self.middles.accept();
             if observer.wants_checkpoints() {
                 self.accepted = (self.controller, Memory::of(&self.equations), self.counts());
             }
@@ -169,7 +171,9 @@ impl<'a> Simulation<'a> {
 
     fn try_step(&mut self, observer: &dyn Observer) -> Result<(), Failure> {
         self.integrator.step(&mut self.equations, &self.now, &mut self.next, &mut self.error, observer)?;
-        let finite = self.next.q.iter().chain(&self.next.v).chain(&self.next.a).all(|x| x.is_finite());
+        let Instantaneous { q, v, a, .. } = &self.next;
+        // All numbers are looked at, which compiles to less than stopping at the first.
+        let finite = [q, v, a].iter().all(|x| x.iter().fold(true, |finite, x| finite & x.is_finite()));
         if !finite {
             return Err(Failure::Overflow { t: self.next.t });
         }
@@ -178,7 +182,7 @@ impl<'a> Simulation<'a> {
         if forced || self.options.method == Method::Rigid {
             return Ok(());
         }
-        let place = self.middles.collapsed(self.equations.system.model(), &self.now.q, &self.next.q);
+        let place = self.middles.collapsed(self.equations.system.model(), &self.next.q);
         place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, t: self.next.t }))
     }
 
@@ -251,9 +255,8 @@ impl<'a> Simulation<'a> {
     /// Belytschko, Liu and Moran, Nonlinear Finite Elements for Continua and Structures (2000), (6.2.21) for damping.
     fn limit(&mut self, precision: f64) -> Option<f64> {
         let limit = self.integrator.explicit_limit()?;
-        let Equations { system, inertia, .. } = &mut self.equations;
-        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q, precision);
-        let damping = system.model().bodies().iter().map(|body| body.plate().material.damping());
+        let omega = highest_frequency(&mut self.equations, self.now.t, &self.now.q, precision);
+        let damping = self.equations.system.model().bodies().iter().map(|body| body.plate().material.damping());
         let ratio = damping.map(|d| 0.5 * (d.viscosity * omega + d.mass / omega)).fold(0.0, f64::max);
         Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
     }
