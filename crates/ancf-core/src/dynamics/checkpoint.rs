@@ -23,14 +23,12 @@ pub struct Checkpoint {
     pub(super) counts: Counts,
 }
 
-/// What Newton's method takes over from the last solution, and the next estimate of the highest frequency from the last one.
+/// What Newton's method takes over from the last solution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Memory {
     reuse: Reuse,
     /// The tangent whose factorisation is kept.
     tangent: Option<Tangent>,
-    /// The mode of the highest frequency; empty if it was not asked.
-    highest_mode: Vec<f64>,
 }
 
 /// The values of a tangent, and the positions and velocities that it was made with.
@@ -45,7 +43,7 @@ impl Memory {
         let system = &equations.system;
         let reuse = equations.newton.reuse();
         let tangent = || Tangent { values: system.tangent().1.to_vec(), at: system.tangent_at().clone() };
-        Self { reuse, tangent: reuse.kept.map(|_| tangent()), highest_mode: equations.highest_mode.clone() }
+        Self { reuse, tangent: reuse.kept.map(|_| tangent()) }
     }
 
     /// Makes the next solution go on from there.
@@ -55,13 +53,12 @@ impl Memory {
             system.restore(values, at).map_err(|e| Failure::from_linear(e, 0, |row| system.describe(row)))?;
         }
         newton.resume(self.reuse);
-        equations.highest_mode.clone_from(&self.highest_mode);
         Ok(())
     }
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp5";
+const MAGIC: &[u8; 8] = b"ancf-cp4";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -76,8 +73,7 @@ impl Checkpoint {
         let given = format!("that of {} nodal coordinates", sizes[0]);
         InputError::check("checkpoint", given, sizes == [n; 4], &format!("that of a run with {n} nodal coordinates"))?;
         let entries = system.tangent().1.len();
-        let modes = [0, n].contains(&self.memory.highest_mode.len());
-        let fits = modes && self.memory.tangent.as_ref().is_none_or(|tangent| tangent.values.len() == entries);
+        let fits = self.memory.tangent.as_ref().is_none_or(|tangent| tangent.values.len() == entries);
         InputError::check("checkpoint", "that of another mesh or support", fits, "that of a run of this model")?;
         let method = options.method.name();
         let given = format!("that of method \"{}\"", self.method);
@@ -123,7 +119,6 @@ impl Checkpoint {
             words.count(trial.pause);
             words.count(trial.last_pause);
         }
-        words.numbers(&memory.highest_mode);
         words.count(usize::from(memory.tangent.is_some()));
         if let (Some(kept), Some(Tangent { values, at })) = (memory.reuse.kept, &memory.tangent) {
             words.numbers(&kept.coefficients);
@@ -180,14 +175,13 @@ impl Checkpoint {
         for trial in &mut reuse.trials {
             *trial = Trial { pause: words.count()?, last_pause: words.count()? };
         }
-        let highest_mode = words.numbers()?;
         let mut tangent = None;
         if words.count()? != 0 {
             let coefficients = words.numbers()?.try_into().ok()?;
             reuse.kept = Some(Kept { coefficients, negative: words.count()? });
             tangent = Some(Tangent { values: words.numbers()?, at: (words.numbers()?, words.numbers()?) });
         }
-        let memory = Memory { reuse, tangent, highest_mode };
+        let memory = Memory { reuse, tangent };
         Some(Self { method, fingerprint, now, controller, memory, counts })
     }
 }

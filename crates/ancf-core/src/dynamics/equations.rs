@@ -12,15 +12,13 @@ pub(super) struct Equations<'a> {
     pub system: &'a mut System,
     pub newton: Newton,
     pub inertia: Inertia,
-    /// The mode of the highest frequency where it was estimated last, which explicit methods need.
-    pub highest_mode: Vec<f64>,
     work: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
     pub fn new(system: &'a mut System, newton: Newton, inertia: Inertia) -> Self {
         let work = vec![0.0; system.coordinates()];
-        Self { system, newton, inertia, highest_mode: Vec::new(), work }
+        Self { system, newton, inertia, work }
     }
 
     /// The force `F`, the loads `Q_e` in it, and the power that damping takes.
@@ -44,15 +42,6 @@ impl<'a> Equations<'a> {
             *force -= *load;
         }
         power
-    }
-
-    /// The elastic force less the loads, which are `loads`.
-    pub fn elastic_force(&mut self, t: f64, q: &[f64], force: &mut [f64], loads: &mut [f64]) {
-        self.system.internal_force(q, force);
-        self.system.external_force(q, t, loads);
-        for (force, load) in force.iter_mut().zip(loads) {
-            *force -= *load;
-        }
     }
 
     /// Sets positions, velocities and accelerations of moved supports.

@@ -255,8 +255,9 @@ impl<'a> Simulation<'a> {
     /// Belytschko, Liu and Moran, Nonlinear Finite Elements for Continua and Structures (2000), (6.2.21) for damping.
     fn limit(&mut self, precision: f64) -> Option<f64> {
         let limit = self.integrator.explicit_limit()?;
-        let omega = highest_frequency(&mut self.equations, self.now.t, &self.now.q, precision);
-        let damping = self.equations.system.model().bodies().iter().map(|body| body.plate().material.damping());
+        let Equations { system, inertia, .. } = &mut self.equations;
+        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q, precision);
+        let damping = system.model().bodies().iter().map(|body| body.plate().material.damping());
         let ratio = damping.map(|d| 0.5 * (d.viscosity * omega + d.mass / omega)).fold(0.0, f64::max);
         Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
     }

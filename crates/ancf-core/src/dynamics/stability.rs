@@ -1,105 +1,67 @@
 //! The highest frequency of a model, which limits explicit steps.
 
-use super::equations::Equations;
+use crate::assembly::System;
+use crate::element::Want;
+use crate::linear::multiply_add;
+
+use super::inertia::Inertia;
 
 /// Iterations after which the estimate is taken as it is.
 const MOST: usize = 300;
-/// Length of the differences of forces that stand for products with the stiffness, relative to the size of the model.
-const DIFFERENCE: f64 = 1e-7;
-/// The share without a pattern in a start from the mode that was found last, so that another one is not missed.
-const NOISE: f64 = 0.1;
-/// Vectors that the mode is made of.
-const KEPT: usize = 16;
 
 /// The highest frequency (rad/s) of small oscillations about a state, by Lanczos's iteration with `M^-1 K`, from below,
 /// taken as found when an iteration changes its square by less than `precision`, relative to it.
 ///
-/// It begins at the mode of the last state where this was asked, which is `equations.highest_mode`, and replaces it.
-///
 /// # Source
 ///
 /// Golub and Van Loan, Matrix Computations (2013), 10.1, in the inner product of the mass matrix.
-pub(super) fn highest_frequency(equations: &mut Equations<'_>, t: f64, q: &[f64], precision: f64) -> f64 {
-    let n = q.len();
-    let free = equations.system.free().to_vec();
-    let mut v = start(equations, &free);
-    let [mut moved, mut p, mut p_before, mut force] = [const { Vec::new() }; 4];
-    let mut loads = vec![0.0; n];
-    let mut at_rest = vec![0.0; n];
-    equations.elastic_force(t, q, &mut at_rest, &mut loads);
-    p.resize(n, 0.0);
-    equations.inertia.add_product(&v, &mut p);
-    p_before.resize(n, 0.0);
-    force.resize(n, 0.0);
-    let mut basis = Vec::new();
-    let (mut diagonal, mut beside, mut beta, mut squared) = (Vec::new(), Vec::new(), 0.0, 0.0);
-    for _ in 0..MOST.min(free.len()) {
-        let size = equations.newton.size(&v);
-        moved.clear();
-        moved.extend(q.iter().zip(&v).map(|(q, v)| q + DIFFERENCE / size * v));
-        equations.elastic_force(t, &moved, &mut force, &mut loads);
-        let mut r = vec![0.0; n];
-        for &i in &free {
-            r[i] = (force[i] - at_rest[i]) * (size / DIFFERENCE);
-        }
-        let alpha = dot(&v, &r);
-        for &i in &free {
-            r[i] -= alpha * p[i] + beta * p_before[i];
-        }
-        diagonal.push(alpha);
-        let last = squared;
-        squared = highest_eigenvalue(&diagonal, &beside, 0.1 * precision);
-        let mut next = vec![0.0; n];
-        if (squared - last).abs() > precision * squared.abs() {
-            equations.inertia.solve(&r, &mut next);
-            beta = dot(&next, &r).max(0.0).sqrt();
-        } else {
-            beta = 0.0;
-        }
-        if basis.len() < KEPT {
-            basis.push(v);
-        }
-        if beta <= f64::EPSILON * squared.abs() {
-            break;
-        }
-        beside.push(beta);
-        next.iter_mut().for_each(|v| *v /= beta);
-        r.iter_mut().for_each(|r| *r /= beta);
-        v = next;
-        p_before = std::mem::replace(&mut p, r);
-    }
-    let mode = &mut equations.highest_mode;
-    mode.clear();
-    mode.resize(n, 0.0);
-    let weights = eigenvector(&diagonal[..basis.len()], &beside, (1.0 + precision) * squared);
-    for (weight, vector) in weights.iter().zip(&basis) {
-        mode.iter_mut().zip(vector).for_each(|(x, v)| *x += weight * v);
-    }
-    squared.max(0.0).sqrt()
-}
-
-/// The vector that the iteration begins at, of norm one in the mass matrix.
-fn start(equations: &Equations<'_>, free: &[usize]) -> Vec<f64> {
-    let n = equations.system.coordinates();
+pub(super) fn highest_frequency(system: &mut System, inertia: &mut Inertia, t: f64, q: &[f64], precision: f64) -> f64 {
+    let mut force = vec![0.0; q.len()];
+    let want = Want { mass: 0.0, stiffness: 1.0, previous: None };
+    system.assemble(q, t, want, &mut force);
+    let ((pattern, stiffness), free) = (system.tangent(), system.free());
+    let of_free = |x: &[f64], factor: f64| -> Vec<f64> { free.iter().map(|&k| factor * x[k]).collect() };
     // Numbers without a pattern, so that no mode is missed; a linear congruential generator with Knuth's constants.
     let mut seed = 1_u64;
-    let mut x = vec![0.0; n];
+    let mut x = vec![0.0; q.len()];
     for &coordinate in free {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         x[coordinate] = (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
     }
-    let normalize = |x: &mut [f64]| {
-        let mut momentum = vec![0.0; n];
-        equations.inertia.add_product(x, &mut momentum);
-        let norm = dot(x, &momentum).sqrt();
-        x.iter_mut().for_each(|x| *x /= norm);
-    };
-    normalize(&mut x);
-    if !equations.highest_mode.is_empty() {
-        x.iter_mut().zip(&equations.highest_mode).for_each(|(x, mode)| *x = mode + NOISE * *x);
-        normalize(&mut x);
+    let mut momentum = vec![0.0; q.len()];
+    inertia.add_product(&x, &mut momentum);
+    let norm = x.iter().zip(&momentum).map(|(x, p)| x * p).sum::<f64>().sqrt();
+    let (mut v, mut p, mut p_before) = (of_free(&x, 1.0 / norm), of_free(&momentum, 1.0 / norm), vec![0.0; free.len()]);
+    let (mut diagonal, mut beside, mut beta, mut squared) = (Vec::new(), Vec::new(), 0.0, 0.0);
+    force.fill(0.0);
+    for _ in 0..MOST.min(free.len()) {
+        let mut r = vec![0.0; free.len()];
+        multiply_add::<1>(pattern, stiffness, &v, &mut r);
+        let alpha = dot(&v, &r);
+        for ((r, p), before) in r.iter_mut().zip(&p).zip(&p_before) {
+            *r -= alpha * p + beta * before;
+        }
+        diagonal.push(alpha);
+        let last = squared;
+        squared = highest_eigenvalue(&diagonal, &beside, 0.1 * precision);
+        if (squared - last).abs() <= precision * squared.abs() {
+            break;
+        }
+        for (coordinate, r) in free.iter().zip(&r) {
+            force[*coordinate] = *r;
+        }
+        inertia.solve(&force, &mut x);
+        v = of_free(&x, 1.0);
+        beta = dot(&v, &r).max(0.0).sqrt();
+        if beta <= f64::EPSILON * squared.abs() {
+            break;
+        }
+        beside.push(beta);
+        v.iter_mut().for_each(|v| *v /= beta);
+        r.iter_mut().for_each(|r| *r /= beta);
+        p_before = std::mem::replace(&mut p, r);
     }
-    x
+    squared.max(0.0).sqrt()
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
@@ -128,30 +90,6 @@ fn highest_eigenvalue(diagonal: &[f64], beside: &[f64], precision: f64) -> f64 {
         if above { high = middle } else { low = middle }
     }
     high
-}
-
-/// About the vector of the highest eigenvalue of a symmetric tridiagonal matrix, of norm one: a step of inverse iteration
-/// with a number just above that eigenvalue, for which no pivot vanishes.
-fn eigenvector(diagonal: &[f64], beside: &[f64], above: f64) -> Vec<f64> {
-    let n = diagonal.len();
-    let mut x = vec![0.0; n];
-    if n == 0 {
-        return x;
-    }
-    let mut pivots = vec![above - diagonal[0]; n];
-    x[0] = 1.0;
-    for i in 1..n {
-        let factor = beside[i - 1] / pivots[i - 1];
-        pivots[i] = above - diagonal[i] - factor * beside[i - 1];
-        x[i] = factor * x[i - 1];
-    }
-    for i in (0..n).rev() {
-        let later = if i + 1 < n { beside[i] * x[i + 1] } else { 0.0 };
-        x[i] = (x[i] + later) / pivots[i];
-    }
-    let norm = dot(&x, &x).sqrt();
-    x.iter_mut().for_each(|x| *x /= norm);
-    x
 }
 
 #[cfg(test)]

@@ -26,3 +26,4 @@ pub use gmres::gmres;
 pub use ordering::order;
 pub use pattern::Pattern;
 pub use sparse::SymmetricMatrix;
+pub(crate) use sparse::multiply_add;

@@ -92,11 +92,6 @@ impl Newton {
         from.iter().zip(to).zip(&self.scale).map(|((a, b), s)| (b - a).abs() / s).fold(0.0, f64::max)
     }
 
-    /// The largest of some changes of the coordinates, relative to the size of the model.
-    pub fn size(&self, changes: &[f64]) -> f64 {
-        changes.iter().zip(&self.scale).map(|(d, s)| d.abs() / s).fold(0.0, f64::max)
-    }
-
     /// Largest changes that count as one, of each coordinate.
     pub fn scale(&self) -> &[f64] {
         &self.scale
