@@ -12,7 +12,7 @@ from ancf.reference.elements import ElementKind
 from ancf.reference.quadrature import gauss, square
 from ancf.reference.shape import QUARTIC
 from ancf.reference.surface import SurfacePoints
-from ancf.reference.thin import PROJECTED, CurvatureKind, MembraneRule, Thin, projection
+from ancf.reference.thin import PROJECTED, SQUARES, CurvatureKind, MembraneRule, Thin, projection
 
 MEMBRANES: list[MembraneRule] = ["full", "lobatto", "projected"]
 CURVATURES: list[CurvatureKind] = ["paper", "koiter"]
@@ -148,7 +148,7 @@ def test_mass(element: ElementKind) -> None:
 
 
 def test_projection() -> None:
-    Pi = projection(PROJECTED)
+    Pi = projection(PROJECTED) + projection(([], [], SQUARES))
     np.testing.assert_allclose(Pi @ Pi, Pi, atol=1e-14)
     assert np.linalg.matrix_rank(Pi) == 22
     x, y = 2 * square(gauss(4)).points.T - 1

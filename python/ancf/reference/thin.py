@@ -25,11 +25,13 @@ def degrees(p: int, q: int) -> Space:
     return [(i, j) for i in range(p + 1) for j in range(q + 1)]
 
 
-PROJECTED = (degrees(1, 3), degrees(3, 1), [*degrees(1, 1), (2, 0), (0, 2)])
-"""What is kept of E_xx, E_yy and E_xy: 22 of 48 dimensions. Without the two squares in E_xy the lines across a strip of
-one element may bend to cubics for nothing, and with them a strip is three times too soft in its plane."""
-
 BILINEAR = (degrees(1, 1), degrees(1, 1), degrees(1, 1))
+PROJECTED = (degrees(1, 3), degrees(3, 1), degrees(1, 1))
+"""What is kept of E_xx, E_yy and E_xy: 20 of 48 dimensions, beside `SQUARES`."""
+
+SQUARES = [(2, 0), (0, 2)]
+"""What is kept of E_xy besides. Without it the lines across a strip of one element may bend to cubics for nothing, and with
+them a strip is three times too soft in its plane."""
 
 
 @dataclass(frozen=True)
@@ -80,10 +82,11 @@ class Thin(Element):
         energy = self._strain_energy(rule, MEMBRANE, self.thickness)
         if self.membrane != "projected":
             return energy
-        side = self._larger_side()
-        smooth = projection(BILINEAR)
-        Pi = smooth + np.sqrt(self._rough_share(side)) * (projection(PROJECTED) - smooth)
-        delta = np.minimum(1, (self.thickness / side) ** 2)
+        normal, *squares = np.sqrt(self._rough_shares())
+        Pi = projection(BILINEAR) + normal * (projection(PROJECTED) - projection(BILINEAR))
+        for power, share in zip(SQUARES, squares, strict=False):
+            Pi = Pi + share * projection(([], [], [power]))
+        delta = np.minimum(1, (self.thickness / self._sides().max(axis=0)) ** 2)
         weight = (1 - delta) * Pi.swapaxes(1, 2) @ energy.weight @ Pi + delta * energy.weight
         return StrainEnergy(energy.table, energy.measure, weight, energy.reference)
 
@@ -107,28 +110,36 @@ class Thin(Element):
         """R_x, R_y and the second derivatives, shape (elements, samples, 5, 3)."""
         return einsum("sva,eai->esvi", self.table(rule.points)[:, 1:], self.reference)
 
-    def _larger_side(self) -> FloatArray:
-        """Larger of the mean lengths of the element along x and along y, m, shape (elements, 1, 1)."""
+    def _sides(self) -> FloatArray:
+        """Mean lengths of the element along x and along y, m, shape (2, elements, 1, 1)."""
         rule = square(gauss(5))
         lengths = np.linalg.norm(self._reference_vectors(rule)[..., :2, :], axis=-1)
         sides = einsum("s,esv->ev", rule.weights, lengths) * [self.l, self.w]
-        return np.asarray(sides.max(axis=1)[:, None, None])
+        return np.asarray(sides.T[..., None, None])
 
-    def _rough_share(self, side: FloatArray) -> FloatArray:
-        """Share of the energy of strains that are not bilinear, shape (elements, 1, 1).
+    def _rough_shares(self) -> FloatArray:
+        """Shares of the energy of strains that are not bilinear, shape (3, elements, 1, 1).
 
-        min(1, h^2 k^4 / (12 |K|)), K the mean Gaussian curvature of the reference: inextensional bending of a doubly
-        curved surface is out of the element's reach in these parts, for waves of the wave number k and more. With l
-        the larger side, k is 12^(1/4) / l for bicubic functions and 1 / l for the incomplete quartic.
+        Of those in E_xx and E_yy, of the square of x and of that of y in E_xy: min(1, h^2 k^4 / (12 C)). Inextensional
+        bending of a curved surface is out of the element's reach in these parts, for waves of the wave number k and
+        more. With l the larger side, for the squares the side in their direction, k is 12^(1/4) / l for bicubic
+        functions and 1 / l for the incomplete quartic. C is the mean Gaussian curvature abs(K) of the reference, for
+        the squares at least that of the mean normal curvature in their direction, squared.
         """
         rule = square(gauss(3))
         vectors = self._reference_vectors(rule)
         n = normal(vectors)
-        xx, yy, xy = np.moveaxis(einsum("esvi,esi->esv", vectors[..., 2:, :], n), -1, 0)
-        curvature = np.abs(((xx * yy - xy**2) / einsum("esi,esi->es", n, n) ** 2) @ rule.weights)
+        area = np.linalg.norm(n, axis=-1)[..., None]
+        second = einsum("esvi,esi->esv", vectors[..., 2:, :], n) / area
+        xx, yy, xy = np.moveaxis(second, -1, 0)
+        gaussian = np.abs(((xx * yy - xy**2) / area[..., 0] ** 2) @ rule.weights)
+        first = np.linalg.norm(vectors[..., :2, :], axis=-1) ** 2
+        along = einsum("s,esv->ve", rule.weights, second[..., :2] / first)
+        sides = self._sides()
+        curvature = np.stack([gaussian, *np.maximum(gaussian, along**2)])[..., None, None]
+        wave = (12 if self._twist() else 1) / np.stack([sides.max(axis=0), *sides]) ** 4
         with np.errstate(divide="ignore"):
-            bending = self.thickness**2 / 12 * ((12 if self._twist() else 1) / side**4)
-            return np.asarray(np.minimum(1, bending / curvature[:, None, None]))
+            return np.asarray(np.minimum(1, self.thickness**2 / 12 * wave / curvature))
 
     def _twist(self) -> bool:
         """Whether r_xy is a nodal vector: the functions are bicubic."""

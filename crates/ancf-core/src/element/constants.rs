@@ -60,10 +60,12 @@ impl Constants {
                     }
                 }
                 Group::Projected(samples, projection) => {
-                    let longer = longer_side(tables, reference);
+                    let sides = mean_sides(tables, reference);
+                    let longer = sides[0].max(sides[1]);
                     // Enough to control every mode, and the whole energy where the element is as thick as it is long.
                     let share = (thickness / longer).powi(2).min(1.0);
-                    let rough = rough_share(tables, vectors, thickness, longer / projection.followed);
+                    let followed = sides.map(|side| side / projection.followed);
+                    let rough = RoughShares::new(tables, vectors, thickness, followed);
                     let points: Vec<_> =
                         points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)).collect();
                     points.iter().for_each(|point| point.append(share * membrane, &mut values));
@@ -76,8 +78,8 @@ impl Constants {
                         });
                         (1.0 - share) * membrane * entry.sum::<f64>()
                     });
-                    if rough < 1.0 {
-                        let reduced = Projection::<N>::reduction(rough.sqrt());
+                    if rough.normal.min(rough.shear[0]).min(rough.shear[1]) < 1.0 {
+                        let reduced = Projection::<N>::reduction(rough.normal.sqrt(), rough.shear.map(f64::sqrt));
                         weight = &reduced * weight * &reduced;
                     }
                     for l in 0..MODES {
@@ -115,8 +117,8 @@ impl Constants {
     }
 }
 
-/// The larger of the mean lengths of an element along x and along y.
-fn longer_side<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N]) -> f64 {
+/// The mean lengths of an element along x and along y.
+fn mean_sides<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N]) -> [f64; 2] {
     let mut sides = [0.0; 2];
     let mut total = 0.0;
     for (shape, weight) in &tables.mass {
@@ -124,29 +126,45 @@ fn longer_side<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N]) ->
         sides[1] += weight * interpolate(&shape.y, reference).norm();
         total += weight;
     }
-    (sides[0] * tables.sides[0]).max(sides[1] * tables.sides[1]) / total
+    [0, 1].map(|a| sides[a] * tables.sides[a] / total)
 }
 
-/// The share of the energy of strains that are not bilinear: `min(1, h^2 / (12 |K| length^4))`, `K` the mean Gaussian
-/// curvature of the reference.
+/// The shares of the energy of membrane strains that are not bilinear: `min(1, h^2 / (12 C length^4))`.
 ///
-/// A doubly curved surface bends without stretching in fields that the element cannot follow in these parts. What it
-/// cannot follow, a wave of the wave number `1 / length` and more, would stretch it: with an energy that is that of
-/// bending over this share, and must not be more than that of bending.
-fn rough_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thickness: f64, length: f64) -> f64 {
-    let mut curvature = 0.0;
-    let mut total = 0.0;
-    for group in &tables.groups {
-        if let Group::Bending(samples, _) = group {
-            for (table, weight) in samples.tables.iter().zip(&samples.weights) {
-                let [x, y, xx, yy, xy] = table.map(|row| interpolate(&row, reference));
-                let n = x.cross(&y);
-                curvature += weight * (xx.dot(&n) * yy.dot(&n) - xy.dot(&n).powi(2)) / n.norm_squared().powi(2);
-                total += weight;
+/// A curved surface bends without stretching in fields that the element cannot follow in these parts. What it cannot
+/// follow, a wave of the wave number `1 / length` and more, would stretch it: with an energy that is that of bending
+/// over this share, and must not be more than that of bending.
+struct RoughShares {
+    /// Of `E_xx`, `E_yy`: `C` is the mean Gaussian curvature `|K|`, `length` the longer one.
+    normal: f64,
+    /// Of the squares of x and of y in `E_xy`: `C` is `|K|` or the square of the mean curvature along x (or y), whichever is
+    /// larger, and `length` the one in that direction. A cylinder twists in waves along its curved side.
+    shear: [f64; 2],
+}
+
+impl RoughShares {
+    fn new<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thickness: f64, length: [f64; 2]) -> Self {
+        let (mut gaussian, mut along, mut total) = (0.0, [0.0; 2], 0.0);
+        for group in &tables.groups {
+            if let Group::Bending(samples, _) = group {
+                for (table, weight) in samples.tables.iter().zip(&samples.weights) {
+                    let [x, y, xx, yy, xy] = table.map(|row| interpolate(&row, reference));
+                    let n = x.cross(&y);
+                    let [b_xx, b_yy, b_xy] = [xx, yy, xy].map(|second| second.dot(&n) / n.norm());
+                    gaussian += weight * (b_xx * b_yy - b_xy.powi(2)) / n.norm_squared();
+                    along[0] += weight * b_xx / x.norm_squared();
+                    along[1] += weight * b_yy / y.norm_squared();
+                    total += weight;
+                }
             }
         }
+        let gaussian = gaussian.abs() / total;
+        let share = |curvature: f64, length: f64| (thickness.powi(2) / (12.0 * curvature * length.powi(4))).min(1.0);
+        Self {
+            normal: share(gaussian, length[0].max(length[1])),
+            shear: [0, 1].map(|a| share(gaussian.max((along[a] / total).powi(2)), length[a])),
+        }
     }
-    (thickness.powi(2) * total / (12.0 * curvature.abs() * length.powi(4))).min(1.0)
 }
 
 /// A sample in the reference state.

@@ -105,9 +105,10 @@ impl<const N: usize> Projection<N> {
         Self { modes, rows, followed }
     }
 
-    /// The matrix on generalised strains that multiplies the parts that are not bilinear by a factor: those of `E_xx`
-    /// that are not linear in y, those of `E_yy` that are not linear in x, and the squares in `E_xy`.
-    pub fn reduction(factor: f64) -> DMatrix<f64> {
+    /// The matrix on generalised strains that multiplies the parts that are not bilinear by factors: `normal` those of
+    /// `E_xx` that are not linear in y, and those of `E_yy` that are not linear in x, `shear` the squares of x and of y in
+    /// `E_xy`.
+    pub fn reduction(normal: f64, shear: [f64; 2]) -> DMatrix<f64> {
         let points = Rule::Gauss(4).points();
         // A strain that is linear along the four point functions, in their coefficients.
         let linear = |i: usize, j: usize| {
@@ -117,11 +118,11 @@ impl<const N: usize> Projection<N> {
         DMatrix::from_fn(MODES, MODES, |k, l| {
             let same = if k == l { 1.0 } else { 0.0 };
             if k.max(l) >= BILINEAR {
-                factor * same
+                shear[k.max(l) - BILINEAR] * same
             } else if k.max(l) >= NORMAL || k / 4 != l / 4 {
                 same
             } else {
-                factor * same + (1.0 - factor) * linear(k % 4, l % 4)
+                normal * same + (1.0 - normal) * linear(k % 4, l % 4)
             }
         })
     }
@@ -140,13 +141,16 @@ mod tests {
                 if k < NORMAL { weight.sqrt() * f(x) } else { f64::from(k as u32) }
             })
         };
-        let reduction = Projection::<12>::reduction(0.3);
+        let reduction = Projection::<12>::reduction(0.3, [0.2, 0.1]);
         let mut linear = coefficients(|x| 2.0 - 5.0 * x);
         linear.rows_mut(BILINEAR, MODES - BILINEAR).fill(0.0);
         assert!((&reduction * &linear - &linear).amax() < 1e-13);
         // A Legendre polynomial, with nothing linear in it.
         let mut rough = coefficients(|x| 6.0 * x * x - 6.0 * x + 1.0);
-        rough.rows_mut(NORMAL, BILINEAR - NORMAL).fill(0.0);
+        rough.rows_mut(NORMAL, MODES - NORMAL).fill(0.0);
         assert!((&reduction * &rough - 0.3 * &rough).amax() < 1e-13);
+        for (square, share) in [(BILINEAR, 0.2), (BILINEAR + 1, 0.1)] {
+            assert_eq!(reduction[(square, square)], share);
+        }
     }
 }
