@@ -102,6 +102,10 @@ pub struct Transpose<S: Simd> {
 /// Registers that are transposed at a time.
 const FOUR: usize = 4;
 
+/// Groups of so many registers that are copied before they are transposed: what has just been stored in pieces cannot be
+/// loaded as a whole.
+const GROUPS: usize = 16;
+
 impl<S: Simd> Transpose<S> {
     /// The transposition for an instruction set.
     #[inline(always)]
@@ -122,6 +126,31 @@ impl<S: Simd> Transpose<S> {
     #[inline(always)]
     fn interleave(simd: S, numbers: &[Lanes<S>]) -> [S::f64s; FOUR] {
         simd.interleave_shfl_f64s([numbers[0].value, numbers[1].value, numbers[2].value, numbers[3].value])
+    }
+
+    /// Numbers of several elements side by side: `source` gives those of a lane, as many as there are in `target`.
+    #[inline(always)]
+    pub fn load<'a>(self, source: impl Fn(usize) -> &'a [f64], target: &mut [Lanes<S>]) {
+        let mut copies = [[self.simd.splat_f64s(0.0); FOUR]; GROUPS];
+        let size = target.len();
+        for (part, target) in target.chunks_mut(FOUR * GROUPS).enumerate() {
+            let begin = part * FOUR * GROUPS;
+            let end = size.min(begin + FOUR * GROUPS);
+            for place in 0..S::F64_LANES {
+                let (fours, rest) = source(self.lanes[place])[begin..end].as_chunks::<FOUR>();
+                for (copy, four) in copies.iter_mut().zip(fours) {
+                    cast_slice_mut(copy)[FOUR * place..][..FOUR].copy_from_slice(four);
+                }
+                if let Some(copy) = copies.get_mut(fours.len()) {
+                    cast_slice_mut(copy)[FOUR * place..][..rest.len()].copy_from_slice(rest);
+                }
+            }
+            for (copy, target) in copies.iter().zip(target.chunks_mut(FOUR)) {
+                for (target, value) in target.iter_mut().zip(self.simd.deinterleave_shfl_f64s(*copy)) {
+                    *target = Lanes { simd: self.simd, value };
+                }
+            }
+        }
     }
 
     /// Stores numbers of several elements, `size` each, element by element in `target`.

@@ -261,9 +261,9 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
                     *class = &block.classes[index as usize];
                 }
                 let classes = &classes[..members.len()];
-                to_lanes(simd, classes, |class| &class.values, &mut constants);
+                to_lanes(simd, order, classes, |class| &class.values, &mut constants);
                 if want.is_some() {
-                    to_lanes(simd, classes, |class| &class.mass, &mut mass);
+                    to_lanes(simd, order, classes, |class| &class.mass, &mut mass);
                 }
                 constants_of = class_of;
             }
