@@ -220,6 +220,6 @@ pub(crate) fn to_lanes<S: Simd>(
             *lanes = Lanes::splat(simd, value);
         }
     } else {
-        order.load(|lane| numbers(classes[lane]), lanes);
+        order.load(|element| numbers(classes[element]), lanes);
     }
 }
