@@ -240,12 +240,12 @@ impl Scatter {
     }
 }
 
-/// Does all of `count` tasks, in parallel if there are several.
+/// Does all of `count` tasks, in parallel if there are several: each is given to whoever is free, not several at once.
 fn each<T: Send>(count: usize, tasks: impl Iterator<Item = T>, work: impl Fn(T) + Send + Sync) {
     if count == 1 {
         tasks.for_each(work);
     } else {
-        tasks.collect::<Vec<_>>().into_par_iter().for_each(work);
+        tasks.collect::<Vec<_>>().into_par_iter().with_max_len(1).for_each(work);
     }
 }
 

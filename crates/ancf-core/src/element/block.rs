@@ -336,7 +336,7 @@ fn by_element<S: Simd>(order: Transpose<S>, numbers: [Lanes<S>; 2]) -> [[f64; 2]
 /// Forces or tangents from lanes to one element after the other.
 #[inline(always)]
 fn store<S: Simd>(order: Transpose<S>, numbers: &[Lanes<S>], elements: &mut [f64]) {
-    // Loops of known length, in which nothing is checked: two thirds of the time.
+    // Of known length, so that nothing is checked in the loops: a tenth of the time of the cheapest element.
     match numbers.len() {
         36 => order.store::<36>(numbers, elements.as_chunks_mut().0),
         48 => order.store::<48>(numbers, elements.as_chunks_mut().0),
