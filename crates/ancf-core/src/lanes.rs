@@ -95,12 +95,16 @@ impl<S: Simd> Lanes<S> {
 #[derive(Clone, Copy, Debug)]
 pub struct Transpose<S: Simd> {
     simd: S,
-    /// The lane whose numbers are in each place.
-    lanes: [usize; MAX_LANES],
+    /// The lane of each element: in the order in which transposed registers have them.
+    pub lanes: [usize; MAX_LANES],
 }
 
 /// Registers that are transposed at a time.
 const FOUR: usize = 4;
+
+/// Groups of so many registers that are copied before they are transposed: what has just been stored in pieces cannot be
+/// loaded as a whole.
+const GROUPS: usize = 16;
 
 impl<S: Simd> Transpose<S> {
     /// The transposition for an instruction set.
@@ -110,39 +114,54 @@ impl<S: Simd> Transpose<S> {
         for (lane, number) in numbers.iter_mut().enumerate() {
             *number = lane as f64;
         }
-        let places = Self::interleave(simd, &[Lanes::from_array(simd, &numbers); FOUR]);
+        let elements = simd.interleave_shfl_f64s([Lanes::from_array(simd, &numbers).value; FOUR]);
         let mut lanes = [0; MAX_LANES];
-        for (lane, place) in lanes.iter_mut().zip(cast_slice::<_, f64>(&places).chunks_exact(FOUR)) {
-            *lane = place[0] as usize;
+        for (lane, element) in lanes.iter_mut().zip(cast_slice::<_, f64>(&elements).chunks_exact(FOUR)) {
+            *lane = element[0] as usize;
         }
         Self { simd, lanes }
     }
 
-    /// Four numbers of one lane after four of another.
+    /// Numbers of several elements side by side: `source` gives those of an element, as many as there are in `target`.
     #[inline(always)]
-    fn interleave(simd: S, numbers: &[Lanes<S>]) -> [S::f64s; FOUR] {
-        simd.interleave_shfl_f64s([numbers[0].value, numbers[1].value, numbers[2].value, numbers[3].value])
-    }
-
-    /// Stores numbers of several elements, `size` each, element by element in `target`.
-    #[inline(always)]
-    pub fn store(self, numbers: &[Lanes<S>], size: usize, target: &mut [f64]) {
-        let elements = target.len() / size;
-        let fours = numbers.chunks_exact(FOUR);
-        let rest = fours.remainder();
-        for (i, four) in fours.enumerate() {
-            let values = Self::interleave(self.simd, four);
-            for (place, values) in cast_slice::<_, f64>(&values).chunks_exact(FOUR).enumerate() {
-                let element = self.lanes[place];
-                if element < elements {
-                    target[element * size + FOUR * i..][..FOUR].copy_from_slice(values);
+    pub fn load<'a>(self, source: impl Fn(usize) -> &'a [f64], target: &mut [Lanes<S>]) {
+        let mut copies = [[self.simd.splat_f64s(0.0); FOUR]; GROUPS];
+        let size = target.len();
+        for (part, target) in target.chunks_mut(FOUR * GROUPS).enumerate() {
+            let begin = part * FOUR * GROUPS;
+            let end = size.min(begin + FOUR * GROUPS);
+            for element in 0..S::F64_LANES {
+                let (fours, rest) = source(element)[begin..end].as_chunks::<FOUR>();
+                for (copy, four) in copies.iter_mut().zip(fours) {
+                    cast_slice_mut(copy)[FOUR * element..][..FOUR].copy_from_slice(four);
+                }
+                if let Some(copy) = copies.get_mut(fours.len()) {
+                    cast_slice_mut(copy)[FOUR * element..][..rest.len()].copy_from_slice(rest);
+                }
+            }
+            for (copy, target) in copies.iter().zip(target.chunks_mut(FOUR)) {
+                for (target, value) in target.iter_mut().zip(self.simd.deinterleave_shfl_f64s(*copy)) {
+                    *target = Lanes { simd: self.simd, value };
                 }
             }
         }
-        for (i, number) in rest.iter().enumerate() {
-            let values = number.to_array();
-            for (lane, element) in target.chunks_exact_mut(size).enumerate() {
-                element[size - rest.len() + i] = values[lane];
+    }
+
+    /// Stores `SIZE` numbers of each element.
+    #[inline(always)]
+    pub fn store<const SIZE: usize>(self, numbers: &[Lanes<S>], elements: &mut [[f64; SIZE]]) {
+        let numbers = &numbers[..SIZE];
+        for k in (0..SIZE - SIZE % FOUR).step_by(FOUR) {
+            let four = [numbers[k].value, numbers[k + 1].value, numbers[k + 2].value, numbers[k + 3].value];
+            let values = self.simd.interleave_shfl_f64s(four);
+            for (values, element) in cast_slice::<_, f64>(&values).chunks_exact(FOUR).zip(elements.iter_mut()) {
+                element[k..k + FOUR].copy_from_slice(values);
+            }
+        }
+        for k in SIZE - SIZE % FOUR..SIZE {
+            let values = numbers[k].to_array();
+            for (lane, element) in self.lanes.iter().zip(elements.iter_mut()) {
+                element[k] = values[*lane];
             }
         }
     }

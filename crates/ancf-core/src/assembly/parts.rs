@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::columns::{Column, Columns};
+use super::columns::Columns;
 use super::numbering::Numbering;
 
 /// Models with at most so many nodes are one part: sharing out less work takes longer than doing it.
@@ -38,11 +38,26 @@ pub(super) struct Part {
 /// Where the entries of an element go.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slots {
-    /// The node of each corner: those of the part first, those of its border after them.
-    pub nodes: [u32; 4],
+    /// The nodes at its corners.
+    pub corners: [Corner; 4],
     /// For each pair of corners `c < r`, at `c + r (r - 1) / 2`, the rows of the later node in the columns of the earlier
     /// one, counted from the end of the diagonal block.
     pub offsets: [u32; 6],
+}
+
+/// A node of an element, with what its sums need of its columns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// Its place in the order of elimination.
+    pub place: u32,
+    /// Entries of the first of its columns.
+    pub length: u32,
+    /// Number of its free coordinates.
+    pub free: u8,
+    /// Whether it belongs to the part, not to its border.
+    pub inside: bool,
+    /// Where its columns and its forces begin among those of the part or of its border.
+    pub first: [u32; 2],
 }
 
 /// A later node, whose columns and forces the part sums apart.
@@ -113,9 +128,21 @@ impl Part {
         let mut later: Vec<_> = cells.iter().flatten().copied().filter(|place| *place >= self.nodes.end).collect();
         later.sort_unstable();
         later.dedup();
-        let number = |place: usize| match later.binary_search(&place) {
-            Ok(i) => self.nodes.len() + i,
-            Err(_) => place - self.nodes.start,
+        for &place in &later {
+            self.border.push(Border { place, first: self.border_size });
+            let column = &columns.of[place];
+            self.border_size[0] += column.entries();
+            self.border_size[1] += column.forces.len();
+        }
+        let corner = |place: usize| {
+            let column = &columns.of[place];
+            let start = &columns.of[self.nodes.start];
+            let (inside, first) = match later.binary_search(&place) {
+                Ok(i) => (false, self.border[i].first),
+                Err(_) => (true, [column.start - start.start, column.forces.start - start.forces.start]),
+            };
+            let (length, free) = (column.length as u32, column.free.len() as u8);
+            Corner { place: place as u32, length, free, inside, first: first.map(|first| first as u32) }
         };
         self.slots = cells
             .iter()
@@ -127,26 +154,8 @@ impl Part {
                         offsets[c + r * (r - 1) / 2] = columns.offset(early, late);
                     }
                 }
-                Slots { nodes: places.map(|place| number(place) as u32), offsets }
+                Slots { corners: places.map(corner), offsets }
             })
             .collect();
-        for place in later {
-            self.border.push(Border { place, first: self.border_size });
-            let column = &columns.of[place];
-            self.border_size[0] += column.entries();
-            self.border_size[1] += column.forces.len();
-        }
-    }
-
-    /// The columns of a node of an element, and where they and the forces begin among those of the part or of its border.
-    pub fn node<'a>(&self, columns: &'a Columns, node: u32) -> (&'a Column, [usize; 2], bool) {
-        let node = node as usize;
-        match node.checked_sub(self.nodes.len()) {
-            None => {
-                let (own, first) = (&columns.of[self.nodes.start + node], &columns.of[self.nodes.start]);
-                (own, [own.start - first.start, own.forces.start - first.forces.start], true)
-            }
-            Some(i) => (&columns.of[self.border[i].place], self.border[i].first, false),
-        }
     }
 }

@@ -4,7 +4,6 @@
 //! columns of the tangent, which no other part touches, or to copies of the columns on its border. Then each part adds the
 //! copies that earlier parts have made of its columns, in their order.
 
-use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -14,9 +13,9 @@ use crate::element::{Portion, tangent_size};
 use crate::linear::{LinearError, Pattern};
 use crate::strain::packed;
 
-use super::columns::{Column, Columns};
+use super::columns::Columns;
 use super::numbering::{Node, Numbering};
-use super::parts::{Part, Slots};
+use super::parts::{Corner, Part, Slots};
 
 /// Nodes whose forces are put in their places by one task.
 const TASK: usize = 4096;
@@ -143,17 +142,14 @@ impl Scatter {
                     }
                     let size = portion.force.len() / count;
                     let own = &portion.force[element * size..(element + 1) * size];
-                    for (corner, own) in own.chunks_exact(size / 4).enumerate() {
-                        let (_, [_, first], inside) = part.node(&self.columns, slots.nodes[corner]);
-                        let target = if inside { &mut force[first..] } else { &mut border[1][first..] };
-                        for (sum, part) in target.iter_mut().zip(own) {
-                            *sum += part;
-                        }
+                    for (corner, own) in slots.corners.iter().zip(own.chunks_exact(size / 4)) {
+                        let target = if corner.inside { &mut *force } else { &mut border[1] };
+                        add(&mut target[corner.first[1] as usize..], own);
                     }
                     if !portion.tangent.is_empty() {
                         let size = tangent_size(size / 3);
                         let tangent = &portion.tangent[element * size..(element + 1) * size];
-                        self.add_tangent(part, slots, tangent, values, &mut border[0]);
+                        self.add_tangent(slots, tangent, values, &mut border[0]);
                     }
                 }
                 start = Instant::now();
@@ -165,41 +161,39 @@ impl Scatter {
     }
 
     /// Adds the tangent of an element to the columns of a part and of its border.
-    fn add_tangent(&self, part: &Part, slots: &Slots, tangent: &[f64], values: &mut [f64], border: &mut [f64]) {
+    fn add_tangent(&self, slots: &Slots, tangent: &[f64], values: &mut [f64], border: &mut [f64]) {
         let pairs = tangent.len() / 10;
-        let nodes = slots.nodes.map(|node| part.node(&self.columns, node));
         for r in 0..4 {
             for c in 0..=r {
                 let pair = &tangent[packed(c, r) * pairs..][..pairs];
-                // Within a part and on its border, nodes are numbered in the order of elimination.
-                let transposed = slots.nodes[r] < slots.nodes[c];
-                let (early, late) = if transposed { (r, c) } else { (c, r) };
-                let (column, [first, _], inside) = nodes[early];
-                let target = if inside { &mut values[first..] } else { &mut border[first..] };
+                let [first, second] = [&slots.corners[c], &slots.corners[r]];
+                let transposed = second.place < first.place;
+                let (early, late) = if transposed { (second, first) } else { (first, second) };
+                let target = if early.inside { &mut *values } else { &mut *border };
+                let target = &mut target[early.first[0] as usize..];
                 let offset = (r != c).then(|| slots.offsets[c + r * r.saturating_sub(1) / 2] as usize);
-                let (rows, columns) = (nodes[late].0.free.clone(), column.free.clone());
-                match (pair.len(), rows.len(), columns.len()) {
-                    (81, 9, 9) => add_whole::<9>(column, offset, pair, transposed, target),
-                    (144, 12, 12) => add_whole::<12>(column, offset, pair, transposed, target),
-                    _ => self.add_free(column, rows, offset, pair, transposed, target),
+                match (pairs, early.free, late.free) {
+                    (81, 9, 9) => add_whole::<9>(early, offset, pair, transposed, target),
+                    (144, 12, 12) => add_whole::<12>(early, offset, pair, transposed, target),
+                    _ => self.add_free([early, late], offset, pair, transposed, target),
                 }
             }
         }
     }
 
     /// Adds the entries that a pair of corners has in the columns of the earlier node, some of whose coordinates, or of
-    /// the later node, are fixed. `rows` are the free coordinates of the later node, `offset` is where they begin below
-    /// the diagonal block; none for the diagonal block itself.
+    /// the later node, are fixed. `offset` is where the rows of the later node begin below the diagonal block; none for
+    /// the diagonal block itself.
     fn add_free(
         &self,
-        column: &Column,
-        rows: Range<usize>,
+        [early, late]: [&Corner; 2],
         offset: Option<usize>,
         pair: &[f64],
         transposed: bool,
         target: &mut [f64],
     ) {
-        let (columns, rows) = (&self.columns.free[column.free.clone()], &self.columns.free[rows]);
+        let [column, other] = [early, late].map(|corner| &self.columns.of[corner.place as usize]);
+        let [columns, rows] = [column, other].map(|node| &self.columns.free[node.free.clone()]);
         let [by_row, by_column] = if transposed { [pair.len().isqrt(), 1] } else { [1, pair.len().isqrt()] };
         for (j, &own) in columns.iter().enumerate() {
             let (begin, rows) = match offset {
@@ -246,18 +240,19 @@ impl Scatter {
     }
 }
 
-/// Does all of `count` tasks, in parallel if there are several.
+/// Does all of `count` tasks, in parallel if there are several: each is given to whoever is free, not several at once.
 fn each<T: Send>(count: usize, tasks: impl Iterator<Item = T>, work: impl Fn(T) + Send + Sync) {
     if count == 1 {
         tasks.for_each(work);
     } else {
-        tasks.collect::<Vec<_>>().into_par_iter().for_each(work);
+        tasks.collect::<Vec<_>>().into_par_iter().with_max_len(1).for_each(work);
     }
 }
 
 /// Adds `SIDE` x `SIDE` entries as `Scatter::add_free` does, where no coordinate is fixed.
+#[inline]
 fn add_whole<const SIDE: usize>(
-    column: &Column,
+    early: &Corner,
     offset: Option<usize>,
     pair: &[f64],
     transposed: bool,
@@ -271,7 +266,7 @@ fn add_whole<const SIDE: usize>(
         for i in 0..SIDE {
             target[i] += if transposed { pair[i][j] } else { pair[j][i] };
         }
-        begin += column.length - j - 1;
+        begin += early.length as usize - j - 1;
     }
 }
 

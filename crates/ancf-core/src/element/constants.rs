@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, Matrix3, Vector3};
 use pulp::{Scalar, Simd};
 
-use crate::lanes::{Lanes, MAX_LANES, Vector};
+use crate::lanes::{Lanes, Transpose, Vector};
 use crate::material::Material;
 use crate::strain::{Curvature, GreenLagrange, Measure, Metric, packed};
 
@@ -226,23 +226,18 @@ fn interpolate<const N: usize>(table: &[f64; N], coordinates: &[[f64; 3]; N]) ->
 #[inline(always)]
 pub(crate) fn to_lanes<S: Simd>(
     simd: S,
+    order: Transpose<S>,
     classes: &[&Constants],
     numbers: impl Fn(&Constants) -> &[f64],
     lanes: &mut Vec<Lanes<S>>,
 ) {
-    lanes.clear();
     let first = classes[0];
+    lanes.resize(numbers(first).len(), Lanes::splat(simd, 0.0));
     if classes.iter().all(|class| std::ptr::eq(*class, first)) {
-        for &value in numbers(first) {
-            lanes.push(Lanes::splat(simd, value));
+        for (lanes, &value) in lanes.iter_mut().zip(numbers(first)) {
+            *lanes = Lanes::splat(simd, value);
         }
     } else {
-        for i in 0..numbers(first).len() {
-            let mut values = [0.0; MAX_LANES];
-            for (value, class) in values.iter_mut().zip(classes) {
-                *value = numbers(class)[i];
-            }
-            lanes.push(Lanes::from_array(simd, &values));
-        }
+        order.load(|element| numbers(classes[element]), lanes);
     }
 }
