@@ -17,6 +17,8 @@ from ancf.plan.timing import SHARE
 
 BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
+_CLEAR, _LITTLE = 0.1, 0.15
+"""The same that is tried for while the next rung costs no more than this part of the plan so far."""
 _DOMINANT = 0.4
 """A side is refined if its error is at least this part of the largest."""
 _SMALL_SIDE = 0.05
@@ -76,6 +78,7 @@ class Ascent:
         while going := [climb for climb in self.search.climbs if not climb.ended]:
             self._step(min(going, key=lambda climb: self.search.predict(climb.next) or 0.0))
             if any(climb.rung for climb in self.search.climbs) and self._enough():
+                self._sharpen()
                 break
         return any(climb.rung for climb in self.search.climbs)
 
@@ -83,6 +86,18 @@ class Ascent:
         """Tell whether the error of the leading climb is small enough, and trusted."""
         lead = self.search.lead
         return lead.refined and lead.own <= BEST * self.search.tol and self._confirmed(self.search.best)
+
+    def _sharpen(self) -> None:
+        """Refine the leading climb further while that costs little beside the plan so far.
+
+        What is known best leaves the more room for errors of cheaper rungs.
+        """
+        search, lead = self.search, self.search.lead
+        while not lead.ended and lead.own > _CLEAR * search.tol:
+            cost = search.predict(lead.next)
+            if cost is None or cost > _LITTLE * search.pilots.spent:
+                break
+            self._step(lead)
 
     def _step(self, climb: Climb) -> None:
         """Run the next rung of a climb and learn from it, or end the climb."""
