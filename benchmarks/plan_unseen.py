@@ -19,7 +19,7 @@ def first_statics() -> Iterator[Case]:
     run = ancf.Static(load_factors=[0.4, 1.0])
     lid = plate((0.4, 0.3), 1e-3, STEEL)
     wind = [ancf.Pressure(pressure=3e3)]
-    yield Case(scene("lid blown", lid, ALL_ROUND, wind, (0.1, 0.15), run, "displacement"), ((24, 20), (40, 32)))
+    yield Case(scene("lid blown", lid, ALL_ROUND, wind, (0.1, 0.15), run, "displacement"), ((32, 28), (80, 64)))
     leaf = ancf.Cylinder(
         radius=0.3, angle=(0.2, 1.2), length=(0.0, 0.25), divisions=(4, 4), thickness=3e-4, material=PAPER
     )
@@ -30,7 +30,7 @@ def first_statics() -> Iterator[Case]:
     )
     hinges = [HINGE, ancf.Support(at="edge:x1", fix=["r"])]
     weight = ancf.Force(at=(1.57, 0.254), force=(0.0, -6e4, 0.0))
-    yield Case(scene("vault loaded", vault, hinges, [weight], (1.57, 0.254), run, "displacement"), ((24, 24), (40, 40)))
+    yield Case(scene("vault loaded", vault, hinges, [weight], (1.57, 0.254), run, "displacement"), ((64, 64), (80, 80)))
     tape = plate((0.4, 0.04), 2e-3, RUBBER)
     yield Case(
         scene("tape bends", tape, [WALL], [line("x1", 0, 0, 0.1)], (0.13, 0.02), run, "curvature"),

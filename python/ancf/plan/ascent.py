@@ -37,7 +37,7 @@ _STALLED = 0.4
 """Rate of convergence that counts as no better."""
 _AGREED = 0.6
 """Part of the tolerance up to which another element on the finest mesh may be off."""
-_RIVAL = 2.0
+_RIVAL = 1.4
 """Cost of another stepping, predicted and observed, relative to the one that was run, up to which it is kept."""
 _RACE = 0.05
 """Part of the time left that such a run may take."""
@@ -241,6 +241,7 @@ class Ascent:
         climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
         if last is not None and refined:
             self._extrapolate(climb, last, scale, refined)
+            self._agree(climb, scale)
 
     def _extrapolate(self, climb: Climb, last: Rung, scale: Sequence[float], refined: list[tuple[int, int]]) -> None:
         """Where the sides refined last converge at a known rate, take out the error that it tells of."""
@@ -255,16 +256,30 @@ class Ascent:
         removed = factor * distance(values, coarse, scale)
         climb.own = max(climb.own - (1 - _TRUST) * removed, _TRUST * climb.own)
 
-    def _confirmed(self, rung: Rung) -> bool:
-        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing.
+    def _agree(self, climb: Climb, scale: Sequence[float]) -> None:
+        """Trust an estimate more where the climb of another element comes to the same."""
+        for other in self.search.climbs:
+            if other.refined and other.family.element != climb.family.element:
+                apart = distance(other.exact, climb.exact, scale)
+                climb.own = min(climb.own, max(2 * apart, _TRUST * climb.own))
 
-        One of its families must agree, the one that is refined before those that may lock or be weak here.
+    def _confirmed(self, rung: Rung) -> bool:
+        """Check the estimate with another element; if it is far off, half of that may be missing.
+
+        Its climb tells, or else it is run on the same mesh. There one of its families must agree, the one that is
+        refined before those that may lock or be weak here.
         """
         lead = self.search.lead
         scale = scales(lead.exact)
+        agreed, nearest = max(_AGREED * self.search.tol, 3 * lead.own), np.inf
+        for other in self.search.climbs:
+            if other.refined and other.family.element != rung.family.element:
+                nearest = min(nearest, distance(other.exact, lead.exact, scale))
+        if nearest <= agreed:
+            return True
+        nearest = np.inf
         refined = {climb.family for climb in self.search.climbs}
         order = sorted(self.search.families, key=lambda f: (f.element == rung.family.element, f not in refined))
-        agreed, nearest = max(_AGREED * self.search.tol, 3 * lead.own), np.inf
         for family in order:
             if nearest <= agreed or (nearest < np.inf and family.element == rung.family.element):
                 break

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import count, product
 
 import numpy as np
 
@@ -24,8 +24,9 @@ _LIKELY = 0.2
 """Chance below which a rung promises nothing."""
 _ROOM = 0.7
 """Part of the error that is allowed above which that of the finest rung leaves no room for a cheaper one's."""
-_DOWN, _RUNS = 0.3, 60.0
-"""Time for each part of the way down, relative to the time before and to that of a run of the choice so far."""
+_DOWN, _RUNS, _FEW = 0.3, 60.0, 8
+"""Time for each part of the way down, relative to the time before and to that of a run of the choice so far;
+and how much is tried anyway."""
 _HOPE = 3.0
 """Errors, relative to the tolerance, that may be too large only by the model that guesses them."""
 _HOPELESS = 6.0
@@ -78,10 +79,12 @@ class Descent:
                 self._try(self.search.choice(rung), 1.0)
 
     def _turns(self) -> Iterator[None]:
-        """Yield while there is time for more."""
+        """Yield while there is time for more, but a few times at least: the clock shall not choose."""
         pilots = self.search.pilots
         end = min(pilots.spent + min(_DOWN * pilots.spent, _RUNS * self._limit()), self.worth)
-        while pilots.spent < end and pilots.left > 0.0:
+        for turn in count():
+            if pilots.left <= 0.0 or (pilots.spent >= end and (turn >= _FEW or pilots.spent >= self.worth)):
+                return
             yield None
 
     def _try(self, choice: Choice, patience: float) -> Pilot:

@@ -14,7 +14,7 @@ from ancf.plan.ladder import Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.timing import Timing
 
-_MARGIN = 0.9
+_MARGIN = 0.95
 """Part of the tolerance that estimates may promise: they are no bounds."""
 _LEFT = 0.5
 """Part of what tighter steps change that is left when it is taken out: a third at the second order."""
@@ -22,6 +22,8 @@ _ROUNDING = 1e-13
 """Relative differences below it are none."""
 _OTHER = np.log(4.0)
 """A pilot of another family says as much of costs as one of the same on a mesh of a quarter of the elements."""
+_LENGTH = np.log(2.0)
+"""And one with other steps as much as on a mesh of half of the elements."""
 _TIE = 1.15
 """Times the cheapest up to which the one with the smallest error is taken."""
 _PER_STEP, _PER_RTOL = 0.8, 0.3
@@ -144,15 +146,19 @@ class Search:
 
     def predict_with(self, rung: Rung, timing: Timing) -> float:
         """Return the seconds of a rung with a stepping, from the pilot with it that is most like the rung."""
-        like = self._like(rung, timing.stepping)
-        return self.costs.predict(rung, like if like is not None else timing.pilot)
+        predicted = self.predict_choice(Choice(rung, timing.stepping))
+        return self.costs.predict(rung, timing.pilot) if predicted is None else predicted
 
     def _like(self, rung: Rung, stepping: Stepping | None) -> Pilot | None:
-        like = [p for p in self.pilots.done if p.ok and p.choice.stepping == stepping]
+        def alike(other: Stepping | None) -> bool:
+            return other == stepping or (other is not None and stepping is not None and other.like(stepping))
 
         def unlike(pilot: Pilot) -> float:
             other = pilot.choice.rung
-            return float(abs(np.log(other.elements / rung.elements)) + _OTHER * (other.family != rung.family))
+            differs = _OTHER * (other.family != rung.family) + _LENGTH * (pilot.choice.stepping != stepping)
+            return float(abs(np.log(other.elements / rung.elements)) + differs)
+
+        like = [pilot for pilot in self.pilots.done if pilot.ok and alike(pilot.choice.stepping)]
 
         return min(like, key=unlike, default=None)
 
@@ -170,20 +176,15 @@ class Search:
 
     def predict(self, rung: Rung) -> float | None:
         """Return the seconds that a rung should take, from the pilot that is most like it."""
-        like = self._like(rung, self.stepping(rung))
-        return None if like is None else self.costs.predict(rung, like)
+        return self.predict_choice(self.choice(rung))
 
     def predict_choice(self, choice: Choice) -> float | None:
-        """Return the seconds of a choice whose steps may be longer than those that were found."""
-        like = self._like(choice.rung, choice.stepping)
-        if like is not None:
-            return self.costs.predict(choice.rung, like)
-        assert choice.stepping is not None
-        found = self.found(choice.stepping)
-        like = self._like(choice.rung, found)
-        if like is None:
-            return None
-        return self.costs.predict(choice.rung, like) * _shortening(found, choice.stepping)
+        """Return the seconds of a choice, from the pilot most like it; its steps may be longer than that one's."""
+        stepping = choice.stepping
+        like = self._like(choice.rung, stepping)
+        if like is None or stepping is None or like.choice.stepping is None:
+            return None if like is None else self.costs.predict(choice.rung, like)
+        return self.costs.predict(choice.rung, like) * _shortening(like.choice.stepping, stepping)
 
     def values(self, rung: Rung) -> Values | None:
         """Return the wanted quantities of a rung if it has been run, with any stepping that is good enough."""
