@@ -76,7 +76,7 @@ def _risen() -> Search:
 
 
 def test_the_error_in_time_is_taken_out_of_what_is_known_best() -> None:
-    """Half the steps change 0.015 of 0.02: of the exact value 1 only the 0.005 that is left is missed, which is told."""
+    """Half the steps change 0.015 of 0.02: of the exact value 1 only the 0.005 that is left is missed, and told."""
     search = _risen()
     assert search.exact[0][1, 0] == pytest.approx(1.02, abs=1e-3)
     search.correct(Rung(THIN[0], ((2, 2),)))

@@ -35,7 +35,8 @@ def of_search(
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
     if chosen.choice.stepping is not None:
         reasons.append(
-            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; it {_told(in_time)}."
+            f"{chosen.choice.stepping} is the cheapest way through time that was found; what is known best "
+            f"{_told(in_time)} in time."
         )
     axes = "xy"
     names = list(pilots.scene.model.bodies)
