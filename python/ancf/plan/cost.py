@@ -114,7 +114,8 @@ class Costs:
     def predict(self, rung: Rung, pilot: Pilot) -> float:
         """Return the seconds of a rung from a pilot of the same scene with the same stepping."""
         assert pilot.result is not None
-        setup = pilot.result.seconds["setup"]
+        # On a busy machine the set-up may have lasted longer than all of the run took the processor.
+        setup = min(float(pilot.result.seconds["setup"]), self.setup(pilot.choice.rung))
         return self.setup(rung) + max(pilot.seconds - setup, 0.0) * self.ratio(rung, pilot)
 
     def steps(self, rung: Rung, steps: float, *, explicit: bool) -> float:
