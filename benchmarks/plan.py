@@ -184,7 +184,7 @@ def main() -> None:
                 print(*found, sep="\n", flush=True)
     for name, found in lines.items():
         if found:
-            print(f"\nScenes {name}:")
+            print(f"\nScenes {name}:\n")
             conclude(found)
 
 
@@ -193,15 +193,16 @@ def conclude(lines: list[Line]) -> None:
     below = [line.error <= line.tol for line in lines]
     told = [line.error <= line.tol for line in lines if line.converged]
     ratios = [line.seconds / line.cheapest for line in lines]
-    print(f"Below the tolerance: {sum(below)} of {len(below)}; where the plan promises it {sum(told)} of {len(told)}.")
-    print(f"Largest true error relative to the tolerance: {max(line.error / line.tol for line in lines):.2g}.")
+    promised = f"where the plan promises it {sum(told)} of {len(told)}"
+    print(f"* Below the tolerance: {sum(below)} of {len(below)}; {promised}.")
+    print(f"* Largest true error relative to the tolerance: {max(line.error / line.tol for line in lines):.2g}.")
     print(
-        f"Cost relative to the cheapest good enough: median {np.median(ratios):.2g}, largest {max(ratios):.2g}, "
+        f"* Cost relative to the cheapest good enough: median {np.median(ratios):.2g}, largest {max(ratios):.2g}, "
         f"at most 2 in {sum(ratio <= 2 for ratio in ratios)} of {len(ratios)}."
     )
     less = sum(line.plan_seconds < line.reference_seconds for line in lines)
     print(
-        f"Seconds of plans: {sum(line.plan_seconds for line in lines):.0f}, less than one run of the reference in "
+        f"* Seconds of plans: {sum(line.plan_seconds for line in lines):.0f}, less than one run of the reference in "
         f"{less} of {len(lines)}; of the choices {sum(line.seconds for line in lines):.2g}, "
         f"of runs of the references {sum(line.reference_seconds for line in lines):.0f}."
     )

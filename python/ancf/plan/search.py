@@ -48,6 +48,16 @@ class Search:
         Of the plan.
     timings : list of Timing
         In motion, what is good enough in time; empty in statics.
+    predicted, guessed : dict of Choice to float
+        Seconds and errors that were expected of pilots before they were run.
+    allowed : list of Stepping
+        Whose values are trusted on the way up.
+    climbs : list of Climb
+        The way up.
+    in_time : float
+        Error in time that is left in what is known best, relative.
+    late : list of ndarray or None
+        What tighter steps change of it.
     """
 
     pilots: Pilots
@@ -127,11 +137,6 @@ class Search:
     def timing(self, rung: Rung) -> Timing:
         """Return the same with what is known of it."""
         return min(self.timings, key=lambda timing: self.predict_with(rung, timing))
-
-    def found(self, stepping: Stepping) -> Stepping:
-        """Return the stepping of the same kind that was found on the coarse mesh, from which it was made longer."""
-        same = (t.stepping for t in self.timings if t.stepping.like(stepping))
-        return next(same, stepping)
 
     def shorten(self, stepping: Stepping, shorter: Stepping) -> None:
         """Take shorter steps in place of others; longer ones may still do on coarser meshes."""
