@@ -7,15 +7,14 @@ and the pictures into docs/elements. It takes some seconds.
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from matplotlib.figure import Figure
+from page import DOCS, put
 
 import ancf
 from ancf.bodies import NODAL_VECTORS
@@ -23,7 +22,6 @@ from ancf.bodies import NODAL_VECTORS
 Element = Literal["thin36", "thin48", "full48a", "full48b"]
 Membrane = Literal["projected", "full", "lobatto"]
 
-DOCS = Path(__file__).parents[1] / "docs" / "elements"
 
 MEMBRANES: dict[Element, tuple[Membrane | None, ...]] = {
     "thin36": ("projected", "full", "lobatto"),
@@ -184,18 +182,6 @@ def draw(element: Element) -> Figure:
     return figure
 
 
-def write(name: str, mark: str, lines: Iterator[str]) -> None:
-    """Put a table between the marks of a page."""
-    page = DOCS / f"{name}.md"
-    text = re.sub(
-        rf"(<!-- {mark} -->\n).*?(<!-- /{mark} -->)",
-        lambda match: "\n".join([match[1] + next(lines), *lines, match[2]]),
-        page.read_text(encoding="utf-8"),
-        flags=re.DOTALL,
-    )
-    page.write_text(text, encoding="utf-8")
-
-
 def main() -> None:
     """Print the tables of all elements, or write them and the pictures into the pages."""
     parser = argparse.ArgumentParser(description="how every element converges with the mesh")
@@ -203,12 +189,12 @@ def main() -> None:
     arguments = parser.parse_args()
     for element in MEMBRANES:
         if arguments.write:
-            write(element, "convergence", table(element))
-            draw(element).savefig(DOCS.parent / "images" / f"convergence-{element}.png", dpi=100)
+            put(f"elements/{element}.md", "convergence", table(element))
+            draw(element).savefig(DOCS / "images" / f"convergence-{element}.png", dpi=100)
         else:
             print(f"{element}\n", *table(element), "", sep="\n")
     if arguments.write:
-        write("README", "finest", finest())
+        put("elements/README.md", "finest", finest())
     else:
         print(*finest(), sep="\n")
 
