@@ -16,6 +16,7 @@ from itertools import product
 
 import numpy as np
 from plan_scenes import Case, developed, made_later
+from plan_unseen import first_round, kept
 
 import ancf
 from ancf.plan.errors import Values, distance, scales
@@ -48,6 +49,7 @@ class Line:
     cheapest: float
     best: str
     plan_seconds: float
+    reference_seconds: float
 
     def __str__(self) -> str:
         promised = f"{self.promised:.1e}" + ("" if self.converged else ", told to be too much")
@@ -62,13 +64,14 @@ class Line:
             f"{self.cheapest:.2g}: {self.best}",
             f"{self.seconds / self.cheapest:.1f}",
             f"{self.plan_seconds:.2g}",
+            f"{self.reference_seconds:.2g}",
         )
         return f"| {' | '.join(cells)} |"
 
 
 def judge(name: str) -> list[Line]:
     """Plan a scene to all tolerances, and compare with references and a chart."""
-    case = next(case for case in (*developed(), *made_later()) if case.scene.title == name)
+    case = next(case for case in (*developed(), *made_later(), *first_round(), *kept()) if case.scene.title == name)
     pilots = Pilots(case.scene, ["A"], 1e9, 1)
     references: dict[Family, Pilot] = {}
     for family, mesh in zip((CONTINUOUS, THIN[0]), case.fine, strict=True):
@@ -79,13 +82,15 @@ def judge(name: str) -> list[Line]:
     exact, other = (references[family].values for family in (CONTINUOUS, THIN[0]))
     doubt = distance(exact, other, scales(exact))
     try:
-        plans = [ancf.plan(case.scene, want="A", tol=tol, threads=1) for tol in TOLERANCES]
+        # Where references are apart they judge only what is looser.
+        tolerances = [tol for tol in TOLERANCES if doubt <= tol]
+        plans = [ancf.plan(case.scene, want="A", tol=tol, threads=1) for tol in tolerances]
     except ancf.InputError as mistake:
         print(name, mistake, file=sys.stderr)
         return []
     tried = chart(case, pilots, exact)
     lines = []
-    for tol, plan in zip(TOLERANCES, plans, strict=True):
+    for tol, plan in zip(tolerances, plans, strict=True):
         # Another element than the one that is judged.
         truth = other if plan.choice.startswith("thin48") else exact
         error = distance([plan.result.probes["A"].value], truth, scales(truth))
@@ -95,7 +100,7 @@ def judge(name: str) -> list[Line]:
         near = [(again(apply(case.scene, choice), seconds), str(choice)) for seconds, choice in fits[:_TIMED]]
         cheapest, best = min([*near, (own, plan.choice)])
         own_error = plan.error + plan.error_in_time
-        cells = (own_error, plan.converged, doubt, own, cheapest, best, plan.seconds)
+        cells = (own_error, plan.converged, doubt, own, cheapest, best, plan.seconds, references[THIN[0]].seconds)
         lines.append(Line(name, tol, plan.choice, error, *cells))
     return lines
 
@@ -161,11 +166,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="How good plans are.")
     parser.add_argument("scenes", nargs="*")
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--holdout", action="store_true", help="scenes planned first when the rules were fixed")
     options = parser.parse_args()
-    sets = {"developed on": developed(), "made later": made_later()}
+    sets = {"developed on": developed(), "made later": made_later(), "first unseen": first_round()}
+    if options.holdout:
+        sets = {"kept": kept()}
     named = {name: [case.scene.title for case in cases] for name, cases in sets.items()}
-    print("| scene | tolerance | chosen | true error | promised | reference to | s | cheapest s | ratio | plan s |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    columns = "scene, tolerance, chosen, true error, promised, reference to, s, cheapest s, ratio, plan s, reference s"
+    print(f"| {columns.replace(', ', ' | ')} |")
+    print("|---" * len(columns.split(", ")) + "|")
     wanted = options.scenes or (["thick plate", "steel hinged"] if options.quick else None)
     lines: dict[str, list[Line]] = {name: [] for name in sets}
     with ProcessPoolExecutor(2) as pool:
@@ -175,7 +184,7 @@ def main() -> None:
                 print(*found, sep="\n", flush=True)
     for name, found in lines.items():
         if found:
-            print(f"\nScenes {name}:")
+            print(f"\nScenes {name}:\n")
             conclude(found)
 
 
@@ -184,11 +193,18 @@ def conclude(lines: list[Line]) -> None:
     below = [line.error <= line.tol for line in lines]
     told = [line.error <= line.tol for line in lines if line.converged]
     ratios = [line.seconds / line.cheapest for line in lines]
-    print(f"Below the tolerance: {sum(below)} of {len(below)}; where the plan promises it {sum(told)} of {len(told)}.")
-    print(f"Largest true error relative to the tolerance: {max(line.error / line.tol for line in lines):.2g}.")
+    promised = f"where the plan promises it {sum(told)} of {len(told)}"
+    print(f"* Below the tolerance: {sum(below)} of {len(below)}; {promised}.")
+    print(f"* Largest true error relative to the tolerance: {max(line.error / line.tol for line in lines):.2g}.")
     print(
-        f"Cost relative to the cheapest good enough: median {np.median(ratios):.2g}, largest {max(ratios):.2g}, "
+        f"* Cost relative to the cheapest good enough: median {np.median(ratios):.2g}, largest {max(ratios):.2g}, "
         f"at most 2 in {sum(ratio <= 2 for ratio in ratios)} of {len(ratios)}."
+    )
+    less = sum(line.plan_seconds < line.reference_seconds for line in lines)
+    print(
+        f"* Seconds of plans: {sum(line.plan_seconds for line in lines):.0f}, less than one run of the reference in "
+        f"{less} of {len(lines)}; of the choices {sum(line.seconds for line in lines):.2g}, "
+        f"of runs of the references {sum(line.reference_seconds for line in lines):.0f}."
     )
 
 

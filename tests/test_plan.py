@@ -4,7 +4,6 @@ import json
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -13,16 +12,13 @@ import pytest
 import ancf
 from ancf import cli
 from ancf.plan import pilots
-from ancf.plan.ascent import Ascent
 from ancf.plan.cost import Costs, Rates
 from ancf.plan.errors import Side, distance, scales
 from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Rung, Stepping, coarsest
 from ancf.plan.planner import LEAST, MOST, PROPORTION
 from ancf.plan.rigid import deflection
-from ancf.plan.search import Search
 from ancf.plan.shear import shear
 from ancf.plan.symmetry import halved
-from ancf.plan.timing import Timing
 from ancf.solve import solve
 
 STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
@@ -170,36 +166,6 @@ def test_threads_are_those_that_take_the_least_predicted_time() -> None:
     assert Costs(dict.fromkeys(THIN, rates) | {CONTINUOUS: rates}, threads=1).threads(Choice(many)) == 1
     # An iteration takes 25 s there on all threads.
     assert costs.steps(many, 2.0, explicit=False) == pytest.approx(1.0 + 2.0 * 3.0 * 25.0)
-
-
-class _Formula(pilots.Pilots):
-    """Pilots whose values are 1, an error in space and, on fine meshes only, one of implicit steps."""
-
-    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
-        (nx, ny), stepping = choice.rung.divisions[0], choice.stepping
-        assert stepping is not None
-        length = 0.0 if stepping.step is None else stepping.step / 1e-3
-        value = 1.0 + 0.3 / nx**2 + 0.3 / ny**2 + (0.016 * length**2 if nx * ny > 4 else 0.0)
-        seconds = nx * ny * (1e-3 * max(nx, ny) if stepping.explicit else 5e-3 / length)
-        result: Any = SimpleNamespace(seconds={"setup": 0.0})
-        return pilots.Pilot(choice, result, [np.array([[0.0], [value]])], seconds, "ok")
-
-
-def test_steps_that_are_too_long_on_finer_meshes_are_shortened_there() -> None:
-    model = cantilever()
-    formula = _Formula(ancf.Scene("", model, ancf.Dynamic(until=0.1, step=1e-3)), ["A"], np.inf, 1)
-    linear: Any = dict.fromkeys(("iteration", "iteration_shared", "force", "force_shared"), (1.0, 10000.0))
-    rates = Rates(elements=(1, 10_000), setup=(1e-9, 1e-9), **linear)
-    coarse = Rung(THIN[0], ((2, 2),))
-    steppings = [Stepping("verlet", rtol=1e-2), Stepping("esdirk", step=1e-3)]
-    timings = [Timing(stepping, 0.0, formula.run(Choice(coarse, stepping))) for stepping in steppings]
-    costs = Costs(dict.fromkeys((*THIN, CONTINUOUS), rates), threads=1)
-    search = Search(formula, costs, (THIN[0], CONTINUOUS), ((1, 1),), 1e-2, timings)
-    assert Ascent(search).up([THIN[0], CONTINUOUS])
-    # Explicit steps are cheaper on coarse meshes only.
-    assert {pilot.choice.stepping for pilot in formula.done} > set(steppings)
-    assert abs(search.exact[0][1, 0] - 1.0) < 1e-2
-    assert search.own < 1e-2
 
 
 def test_a_soft_plate_is_no_rigid_body() -> None:

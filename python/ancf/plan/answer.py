@@ -15,36 +15,8 @@ from ancf.plan.timing import SHARE
 from ancf.result import Result
 from ancf.scene import Scene
 
-_CHECKS = 3
 _ROUNDING = 1e-13
 """Relative differences below it are none."""
-
-
-def check_time(search: Search, chosen: Pilot, scale: Sequence[float], allowed: float) -> tuple[Pilot, float]:
-    """Repeat the choice with tighter steps until they no longer matter; return it with its error in time, relative.
-
-    What longer steps add shows in the distance to what is known best. What that lacks itself shows in the steps that
-    were found on the coarse mesh: they are compared with tighter ones.
-    """
-    stepping = chosen.choice.stepping
-    # Where it cannot be checked, what was found on a coarse mesh must do.
-    error = max((t.error for t in search.timings if t.stepping == stepping), default=SHARE * search.tol)
-    for _ in range(_CHECKS):
-        stepping = chosen.choice.stepping
-        if stepping is None:
-            return chosen, 0.0
-        found = search.found(stepping)
-        known = search.pilots.run(replace(chosen.choice, stepping=found))
-        tight = search.pilots.run(replace(chosen.choice, stepping=found.tighter()))
-        if not known.ok or not tight.ok:
-            break
-        change = distance(tight.values, known.values, scale)
-        # The limit of stability may set the steps of both: then tighter control tells nothing.
-        error = max(change, error) if change < _ROUNDING else change
-        if error <= max(allowed, SHARE * search.tol):
-            break
-        chosen = tight
-    return chosen, error
 
 
 def of_search(
@@ -63,7 +35,8 @@ def of_search(
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
     if chosen.choice.stepping is not None:
         reasons.append(
-            f"{chosen.choice.stepping} is predicted to be the cheapest way through time; it {_told(in_time)}."
+            f"{chosen.choice.stepping} is the cheapest way through time that was found; what is known best "
+            f"{_told(in_time)} in time."
         )
     axes = "xy"
     names = list(pilots.scene.model.bodies)

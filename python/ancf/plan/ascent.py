@@ -9,24 +9,23 @@ from fractions import Fraction
 import numpy as np
 
 from ancf.plan.climb import Climb
-from ancf.plan.errors import RATES, Side, distance, scales
+from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import Choice, Family, Rung
+from ancf.plan.learn import COMPARED, learn
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
 from ancf.plan.timing import SHARE
 
 BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
+_CLEAR, _LITTLE = 0.1, 0.15
+"""The same that is tried for while the next rung costs no more than this part of the plan so far."""
 _DOMINANT = 0.4
 """A side is refined if its error is at least this part of the largest."""
 _SMALL_SIDE = 0.05
 """Part of the tolerance below which a side is not refined further."""
-_COMPARED = 32
-"""Elements up to which a rung is compared with neighbours that are coarser along one side."""
 _RECONSIDERED, _APART = 64, 3.0
 """Elements up to which another family may take over, and errors of the lead by which one must be off it for that."""
-_TRUST = 0.5
-"""Part of the error that remains when it is extrapolated."""
 _SHORTER = 5
 """Times that steps are shortened where they cannot be solved."""
 _PATIENCE = 2
@@ -35,7 +34,7 @@ _STALLED = 0.4
 """Rate of convergence that counts as no better."""
 _AGREED = 0.6
 """Part of the tolerance up to which another element on the finest mesh may be off."""
-_RIVAL = 2.0
+_RIVAL = 1.4
 """Cost of another stepping, predicted and observed, relative to the one that was run, up to which it is kept."""
 _RACE = 0.05
 """Part of the time left that such a run may take."""
@@ -76,6 +75,7 @@ class Ascent:
         while going := [climb for climb in self.search.climbs if not climb.ended]:
             self._step(min(going, key=lambda climb: self.search.predict(climb.next) or 0.0))
             if any(climb.rung for climb in self.search.climbs) and self._enough():
+                self._sharpen()
                 break
         return any(climb.rung for climb in self.search.climbs)
 
@@ -83,6 +83,18 @@ class Ascent:
         """Tell whether the error of the leading climb is small enough, and trusted."""
         lead = self.search.lead
         return lead.refined and lead.own <= BEST * self.search.tol and self._confirmed(self.search.best)
+
+    def _sharpen(self) -> None:
+        """Refine the leading climb further while that costs little beside the plan so far.
+
+        What is known best leaves the more room for errors of cheaper rungs.
+        """
+        search, lead = self.search, self.search.lead
+        while not lead.ended and lead.own > _CLEAR * search.tol:
+            cost = search.predict(lead.next)
+            if cost is None or cost > _LITTLE * search.pilots.spent:
+                break
+            self._step(lead)
 
     def _step(self, climb: Climb) -> None:
         """Run the next rung of a climb and learn from it, or end the climb."""
@@ -97,7 +109,7 @@ class Ascent:
         self._compare_steps(climb)
         if self._run(rung).ok:
             before = climb.own
-            self._learn(climb)
+            learn(self.search, climb)
             climb.stalled = climb.stalled + 1 if climb.own > before * 2.0**-_STALLED else 0
             climb.next = self._refined(climb)
             self._race(rung)
@@ -172,7 +184,7 @@ class Ascent:
 
         An implicit one that is slower than an explicit one is kept: it may be cheaper on finer meshes.
         """
-        if rung.elements > _COMPARED:
+        if rung.elements > COMPARED:
             return
         first = self.search.stepping(rung)
         limit = _RIVAL * self._seconds(rung)
@@ -184,72 +196,23 @@ class Ascent:
             if not pilot.ok and (timing.stepping.explicit or not (first and first.explicit)):
                 self.search.timings.remove(timing)
 
-    def _learn(self, climb: Climb) -> None:
-        """Set the finest rung, what is known along its sides, the extrapolated values and what they lack.
-
-        Small rungs are compared with their neighbours that are coarser along one side. Of larger ones only the last
-        rung is at hand: its difference is shared out along the sides that were refined as the errors were before.
-        """
-        rung, last = climb.next, climb.rung
-        values = self.search.values(rung)
-        assert values is not None
-        scale = scales(values)
-        before = dict(climb.sides)
-        refined = [side for side in rung.sides() if last is None or _count(rung, side) > _count(last, side)]
-        if last is None or rung.elements <= _COMPARED:
-            for side in rung.sides():
-                half = rung.scaled(side, Fraction(1, 2))
-                if half is None:
-                    continue
-                pilot = self.search.run(half)
-                coarse = pilot.values if pilot.ok else None if last is None else self.search.values(last)
-                if coarse is None:
-                    continue
-                difference = distance(values, coarse, scale)
-                old = before.get(side)
-                rate = old.rate if old else None
-                if old is not None and side in refined:
-                    rate = _rate(old.difference, difference)
-                climb.sides[side] = Side(difference, rate)
-        else:
-            coarse = self.search.values(last)
-            assert coarse is not None
-            total = distance(values, coarse, scale)
-            expected = {side: before[side].error for side in refined if side in before}
-            share = sum(expected.values())
-            for side in refined:
-                part = total * expected.get(side, 0.0) / share if share else total
-                climb.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
-        climb.rung, climb.exact, climb.refined = rung, values, last is not None
-        # Nothing is known of a side along which no coarser rung reached its end.
-        known = all(side in climb.sides for side in rung.sides())
-        climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
-        if last is not None and refined:
-            self._extrapolate(climb, last, scale, refined)
-
-    def _extrapolate(self, climb: Climb, last: Rung, scale: Sequence[float], refined: list[tuple[int, int]]) -> None:
-        """Where the sides refined last converge at a known rate, take out the error that it tells of."""
-        rates = [climb.sides[side].rate for side in refined]
-        known = [rate for rate in rates if rate is not None]
-        coarse = self.search.values(last)
-        if coarse is None or len(known) < len(rates) or min(known) < RATES[0] * 2:
-            return
-        factor = 1.0 / (2.0 ** min(*known, RATES[1]) - 1.0)
-        values = climb.exact
-        climb.exact = [fine + factor * (fine - old) for fine, old in zip(values, coarse, strict=True)]
-        removed = factor * distance(values, coarse, scale)
-        climb.own = max(climb.own - (1 - _TRUST) * removed, _TRUST * climb.own)
-
     def _confirmed(self, rung: Rung) -> bool:
-        """Check the estimate with another element on the same mesh; if it is far off, half of that may be missing.
+        """Check the estimate with another element; if it is far off, half of that may be missing.
 
-        One of its families must agree, the one that is refined before those that may lock or be weak here.
+        Its climb tells, or else it is run on the same mesh. There one of its families must agree, the one that is
+        refined before those that may lock or be weak here.
         """
         lead = self.search.lead
         scale = scales(lead.exact)
+        agreed, nearest = max(_AGREED * self.search.tol, 3 * lead.own), np.inf
+        for other in self.search.climbs:
+            if other.refined and other.family.element != rung.family.element:
+                nearest = min(nearest, distance(other.exact, lead.exact, scale))
+        if nearest <= agreed:
+            return True
+        nearest = np.inf
         refined = {climb.family for climb in self.search.climbs}
         order = sorted(self.search.families, key=lambda f: (f.element == rung.family.element, f not in refined))
-        agreed, nearest = max(_AGREED * self.search.tol, 3 * lead.own), np.inf
         for family in order:
             if nearest <= agreed or (nearest < np.inf and family.element == rung.family.element):
                 break
@@ -276,17 +239,6 @@ class Ascent:
             if error >= _DOMINANT * worst and error > _SMALL_SIDE * self.search.tol:
                 rung = rung.scaled(at, Fraction(2)) or rung
         return rung
-
-
-def _count(rung: Rung, side: tuple[int, int]) -> int:
-    body, axis = side
-    return rung.divisions[body][axis]
-
-
-def _rate(before: float, after: float) -> float | None:
-    if not 0 < before < np.inf or not 0 < after < np.inf:
-        return None
-    return float(np.log2(before / after))
 
 
 def _doubled(rung: Rung) -> Rung:

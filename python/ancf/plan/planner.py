@@ -10,7 +10,7 @@ import numpy as np
 
 from ancf.errors import InputError, Interrupted, Mistake
 from ancf.model import Model
-from ancf.plan.answer import check_time, of_rigid, of_search
+from ancf.plan.answer import of_rigid, of_search
 from ancf.plan.ascent import Ascent
 from ancf.plan.asked import changes, check, scene_of, wanted
 from ancf.plan.cost import Costs, as_written, calibrated
@@ -34,6 +34,8 @@ To check that by hand takes it once more, with twice the elements along both sid
 """
 _SYMMETRIC = 0.2
 """Part of the tolerance that the whole of a symmetric scene may be off its half."""
+_CHECKS = 3
+"""Rungs on which steps are checked before one of them is chosen."""
 
 
 def plan(
@@ -143,7 +145,8 @@ def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: fl
             raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
         descent = Descent(search, worth)
         descent.down()
-        descent.lengthen()
+        _choose(search)
+        descent.near()
         descent.settle()
         return _answer(search)
     except KeyboardInterrupt:
@@ -153,18 +156,24 @@ def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: fl
         return _answer(search)
 
 
+def _choose(search: Search) -> Pilot:
+    """Return the cheapest pilot that is good enough, else the best one, once the error in time is known on its rung."""
+    checked: set[Rung] = set()
+    while True:
+        errors = search.observed()
+        chosen = search.cheapest(errors) or search.pilots.known(min(errors, key=errors.__getitem__))
+        assert chosen is not None
+        if chosen.choice.rung in checked or len(checked) == _CHECKS:
+            return chosen
+        checked.add(chosen.choice.rung)
+        search.correct(chosen.choice.rung)
+
+
 def _answer(search: Search) -> Plan:
-    """Choose from what a search has found, check it in time and tell."""
-    pilots = search.pilots
-    scale = changes(search.exact, pilots.want)
-    chosen = search.cheapest(search.observed()) or _of_rung(pilots, search.best)
-    in_space = search.observed()[chosen.choice]
-    chosen, in_time = check_time(search, chosen, scale, search.tol - in_space)
-    return of_search(search, chosen, in_space, in_time, scale)
-
-
-def _of_rung(pilots: Pilots, rung: Rung) -> Pilot:
-    return min((p for p in pilots.done if p.ok and p.choice.rung == rung), key=lambda pilot: pilot.seconds)
+    """Choose from what a search has found and tell."""
+    scale = changes(search.exact, search.pilots.want)
+    chosen = _choose(search)
+    return of_search(search, chosen, search.observed()[chosen.choice], search.in_time, scale)
 
 
 def _timings(

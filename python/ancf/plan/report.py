@@ -63,7 +63,8 @@ class Plan:
     scale : dict of str to float
         Of each wanted probe its largest change, what errors are relative to.
     error, error_in_time : float
-        Estimated errors of the choice in space and in time, relative.
+        Estimated errors of the choice, relative: from what is known best, with what that lacks in space; and what it
+        lacks in time.
     converged : bool
         Whether the estimates promise the tolerance.
     reasons : list of str

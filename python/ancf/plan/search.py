@@ -10,9 +10,24 @@ import numpy as np
 from ancf.plan.climb import Climb
 from ancf.plan.cost import Costs
 from ancf.plan.errors import Side, Values, distance, scales
-from ancf.plan.ladder import RIGID, Choice, Family, Rung, Stepping
+from ancf.plan.ladder import Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
-from ancf.plan.timing import SHARE, Timing
+from ancf.plan.timing import Timing
+
+_MARGIN = 0.95
+"""Part of the tolerance that estimates may promise: they are no bounds."""
+_LEFT = 0.5
+"""Part of what tighter steps change that is left when it is taken out: a third at the second order."""
+_ROUNDING = 1e-13
+"""Relative differences below it are none."""
+_OTHER = np.log(4.0)
+"""A pilot of another family says as much of costs as one of the same on a mesh of a quarter of the elements."""
+_LENGTH = np.log(2.0)
+"""And one with other steps as much as on a mesh of half of the elements."""
+_TIE = 1.15
+"""Times the cheapest up to which the one with the smallest error is taken."""
+_PER_STEP, _PER_RTOL = 0.8, 0.3
+"""Powers of the step and of the tolerance of error control with which costs shrink."""
 
 
 @dataclass
@@ -33,6 +48,16 @@ class Search:
         Of the plan.
     timings : list of Timing
         In motion, what is good enough in time; empty in statics.
+    predicted, guessed : dict of Choice to float
+        Seconds and errors that were expected of pilots before they were run.
+    allowed : list of Stepping
+        Whose values are trusted on the way up.
+    climbs : list of Climb
+        The way up.
+    in_time : float
+        Error in time that is left in what is known best, relative.
+    late : list of ndarray or None
+        What tighter steps change of it.
     """
 
     pilots: Pilots
@@ -45,15 +70,18 @@ class Search:
     allowed: list[Stepping] = field(default_factory=list)
     guessed: dict[Choice, float] = field(default_factory=dict)
     climbs: list[Climb] = field(default_factory=list)
+    in_time: float = 0.0
+    late: Values | None = None
 
     def __post_init__(self) -> None:
         """Allow the steppings that are good enough; those that replace them are allowed later."""
         self.allowed = [timing.stepping for timing in self.timings]
+        self.in_time = max((timing.error for timing in self.timings), default=0.0)
 
     @property
     def allowance(self) -> float:
-        """The error in space that the choice may have: in motion a share is left for that in time."""
-        return (1.0 - SHARE if self.timings else 1.0) * self.tol
+        """The distance to what is known best, and what that lacks in space, that the choice may have."""
+        return _MARGIN * self.tol - self.in_time
 
     @property
     def lead(self) -> Climb:
@@ -69,7 +97,26 @@ class Search:
     @property
     def exact(self) -> Values:
         """What is known best of the wanted quantities."""
-        return self.lead.exact
+        exact = self.lead.exact
+        return exact if self.late is None else [x + late for x, late in zip(exact, self.late, strict=True)]
+
+    def correct(self, rung: Rung) -> None:
+        """Take out of what is known best what tighter steps change on a rung; set what is left of the error in time.
+
+        Where that cannot be run, what was found on the coarse mesh must do.
+        """
+        stepping = self.stepping(self.best)
+        if stepping is None:
+            return
+        own = self.pilots.run(Choice(rung, stepping))
+        tight = self.pilots.run(Choice(rung, stepping.tighter()))
+        if not own.ok or not tight.ok:
+            return
+        change = distance(tight.values, own.values, scales(own.values))
+        self.late = [after - before for after, before in zip(tight.values, own.values, strict=True)]
+        # The limit of stability may set the steps of both: then tighter control tells nothing.
+        if change > _ROUNDING:
+            self.in_time = _LEFT * change
 
     @property
     def own(self) -> float:
@@ -85,12 +132,11 @@ class Search:
         """Return the stepping that is predicted to be the cheapest on a rung; None in statics."""
         if not self.timings:
             return None
-        return min(self.timings, key=lambda timing: self.predict_with(rung, timing)).stepping
+        return self.timing(rung).stepping
 
-    def found(self, stepping: Stepping) -> Stepping:
-        """Return the stepping of the same kind that was found on the coarse mesh, from which it was made longer."""
-        same = (t.stepping for t in self.timings if t.stepping.like(stepping))
-        return next(same, stepping)
+    def timing(self, rung: Rung) -> Timing:
+        """Return the same with what is known of it."""
+        return min(self.timings, key=lambda timing: self.predict_with(rung, timing))
 
     def shorten(self, stepping: Stepping, shorter: Stepping) -> None:
         """Take shorter steps in place of others; longer ones may still do on coarser meshes."""
@@ -105,15 +151,19 @@ class Search:
 
     def predict_with(self, rung: Rung, timing: Timing) -> float:
         """Return the seconds of a rung with a stepping, from the pilot with it that is most like the rung."""
-        like = self._like(rung, timing.stepping)
-        return self.costs.predict(rung, like if like is not None else timing.pilot)
+        predicted = self.predict_choice(Choice(rung, timing.stepping))
+        return self.costs.predict(rung, timing.pilot) if predicted is None else predicted
 
     def _like(self, rung: Rung, stepping: Stepping | None) -> Pilot | None:
-        like = [p for p in self.pilots.done if p.ok and p.choice.stepping == stepping]
+        def alike(other: Stepping | None) -> bool:
+            return other == stepping or (other is not None and stepping is not None and other.like(stepping))
 
-        def unlike(pilot: Pilot) -> tuple[float, bool]:
+        def unlike(pilot: Pilot) -> float:
             other = pilot.choice.rung
-            return abs(np.log(other.elements / rung.elements)), other.family != rung.family
+            differs = _OTHER * (other.family != rung.family) + _LENGTH * (pilot.choice.stepping != stepping)
+            return float(abs(np.log(other.elements / rung.elements)) + differs)
+
+        like = [pilot for pilot in self.pilots.done if pilot.ok and alike(pilot.choice.stepping)]
 
         return min(like, key=unlike, default=None)
 
@@ -131,8 +181,15 @@ class Search:
 
     def predict(self, rung: Rung) -> float | None:
         """Return the seconds that a rung should take, from the pilot that is most like it."""
-        like = self._like(rung, self.stepping(rung))
-        return None if like is None else self.costs.predict(rung, like)
+        return self.predict_choice(self.choice(rung))
+
+    def predict_choice(self, choice: Choice) -> float | None:
+        """Return the seconds of a choice, from the pilot most like it; its steps may be longer than that one's."""
+        stepping = choice.stepping
+        like = self._like(choice.rung, stepping)
+        if like is None or stepping is None or like.choice.stepping is None:
+            return None if like is None else self.costs.predict(choice.rung, like)
+        return self.costs.predict(choice.rung, like) * _shortening(like.choice.stepping, stepping)
 
     def values(self, rung: Rung) -> Values | None:
         """Return the wanted quantities of a rung if it has been run, with any stepping that is good enough."""
@@ -148,16 +205,25 @@ class Search:
 
     def cheapest(self, errors: dict[Choice, float]) -> Pilot | None:
         """Return the cheapest pilot whose error is small enough."""
-        return min(self.good(errors), key=lambda pilot: pilot.seconds, default=None)
+        good = self.good(errors)
+        limit = _TIE * min((pilot.seconds for pilot in good), default=0.0)
+        # Among those that cost about the same the clock shall not choose.
+        tied = (pilot for pilot in good if pilot.seconds <= limit)
+        return min(tied, key=lambda pilot: errors[pilot.choice], default=None)
 
     def good(self, errors: dict[Choice, float]) -> list[Pilot]:
         """Return the pilots whose error is small enough."""
-        rigid = [pilot.choice.stepping for pilot in self.pilots.done if pilot.choice.rung.family == RIGID]
-        allowed = [*self.allowed, *rigid] if self.timings else [None]
         return [
             pilot
             for choice, error in errors.items()
-            if error <= self.allowance
-            and choice.stepping in allowed
-            and (pilot := self.pilots.known(choice)) is not None
+            if error <= self.allowance and (pilot := self.pilots.known(choice)) is not None
         ]
+
+
+def _shortening(found: Stepping, longer: Stepping) -> float:
+    """Return the cost of longer steps relative to those that were found."""
+    if found.step is not None and longer.step is not None:
+        return float((found.step / longer.step) ** _PER_STEP)
+    assert found.rtol is not None
+    assert longer.rtol is not None
+    return float((found.rtol / longer.rtol) ** _PER_RTOL)

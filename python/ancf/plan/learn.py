@@ -1,0 +1,98 @@
+"""What a rung on the way up tells: differences and rates along its sides, extrapolated values and their error."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+
+import numpy as np
+
+from ancf.plan.climb import Climb
+from ancf.plan.errors import RATES, Side, distance, scales
+from ancf.plan.ladder import Rung
+from ancf.plan.search import Search
+
+COMPARED = 32
+"""Elements up to which a rung is compared with neighbours that are coarser along one side."""
+_TRUST = 0.5
+"""Part of the error that remains when it is extrapolated, or when another element comes to the same."""
+
+
+def learn(search: Search, climb: Climb) -> None:
+    """Set the finest rung, what is known along its sides, the extrapolated values and what they lack.
+
+    Small rungs are compared with their neighbours that are coarser along one side. Of larger ones only the last
+    rung is at hand: its difference is shared out along the sides that were refined as the errors were before.
+    """
+    rung, last = climb.next, climb.rung
+    values = search.values(rung)
+    assert values is not None
+    scale = scales(values)
+    before = dict(climb.sides)
+    refined = [side for side in rung.sides() if last is None or _count(rung, side) > _count(last, side)]
+    if last is None or rung.elements <= COMPARED:
+        for side in rung.sides():
+            half = rung.scaled(side, Fraction(1, 2))
+            if half is None:
+                continue
+            pilot = search.run(half)
+            coarse = pilot.values if pilot.ok else None if last is None else search.values(last)
+            if coarse is None:
+                continue
+            difference = distance(values, coarse, scale)
+            old = before.get(side)
+            rate = old.rate if old else None
+            if old is not None and side in refined:
+                rate = _rate(old.difference, difference)
+            climb.sides[side] = Side(difference, rate)
+    else:
+        coarse = search.values(last)
+        assert coarse is not None
+        total = distance(values, coarse, scale)
+        expected = {side: before[side].error for side in refined if side in before}
+        share = sum(expected.values())
+        for side in refined:
+            part = total * expected.get(side, 0.0) / share if share else total
+            climb.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
+    climb.rung, climb.exact, climb.refined = rung, values, last is not None
+    # Nothing is known of a side along which no coarser rung reached its end.
+    known = all(side in climb.sides for side in rung.sides())
+    climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
+    if last is not None and refined:
+        _extrapolate(search, climb, last, scale, refined)
+        _agree(search, climb, scale)
+
+
+def _extrapolate(
+    search: Search, climb: Climb, last: Rung, scale: Sequence[float], refined: list[tuple[int, int]]
+) -> None:
+    """Where the sides refined last converge at a known rate, take out the error that it tells of."""
+    rates = [climb.sides[side].rate for side in refined]
+    known = [rate for rate in rates if rate is not None]
+    coarse = search.values(last)
+    if coarse is None or len(known) < len(rates) or min(known) < RATES[0] * 2:
+        return
+    factor = 1.0 / (2.0 ** min(*known, RATES[1]) - 1.0)
+    values = climb.exact
+    climb.exact = [fine + factor * (fine - old) for fine, old in zip(values, coarse, strict=True)]
+    removed = factor * distance(values, coarse, scale)
+    climb.own = max(climb.own - (1 - _TRUST) * removed, _TRUST * climb.own)
+
+
+def _agree(search: Search, climb: Climb, scale: Sequence[float]) -> None:
+    """Trust an estimate more where the climb of another element comes to the same."""
+    for other in search.climbs:
+        if other.refined and other.family.element != climb.family.element:
+            apart = distance(other.exact, climb.exact, scale)
+            climb.own = min(climb.own, max(2 * apart, _TRUST * climb.own))
+
+
+def _count(rung: Rung, side: tuple[int, int]) -> int:
+    body, axis = side
+    return rung.divisions[body][axis]
+
+
+def _rate(before: float, after: float) -> float | None:
+    if not 0 < before < np.inf or not 0 < after < np.inf:
+        return None
+    return float(np.log2(before / after))
