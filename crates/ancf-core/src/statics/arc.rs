@@ -69,11 +69,6 @@ impl Walk {
         Self { longest: f64::INFINITY, ..self }
     }
 
-    /// Makes the next step shorter.
-    pub fn shorten(&mut self, share: f64) {
-        self.length *= share;
-    }
-
     /// Makes a step of the path; it ends where a limit point or the target is met.
     pub fn step(&mut self, path: &mut Path<'_>, target: f64, observer: &dyn Observer) -> Result<(), Failure> {
         let mut share = 1.0;
