@@ -21,7 +21,7 @@ const PASSED_UNSTABLE: f64 = 4.0;
 /// that it leaves is no longer, and nor are those that are as close to their limit.
 const BEYOND: f64 = 0.01;
 /// Iterations of a motion.
-const MOST_MOTION: usize = 1500;
+const MOST_MOTION: usize = 5000;
 /// Disturbance along the mode that has lost its stiffness, relative to the size of the model.
 const DISTURBANCE: f64 = 1e-3;
 
@@ -56,7 +56,7 @@ fn lead_on(
     let onwards = |from: f64, change: f64| from + direction * change.min((target - from).abs());
     let longest = if unstable { length } else { PASSED * length };
     let passed = if unstable { PASSED_UNSTABLE } else { PASSED } * length;
-    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]).bounded_by_load();
+    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]);
     let (mut stable, mut farthest) = (path.at.q.clone(), start);
     for _ in 0..MOST_STEPS {
         match walk.step(path, target, observer) {
