@@ -33,6 +33,9 @@ pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn 
     let (first, target) = (factors[0] - path.at.load.t, factors[factors.len() - 1]);
     let step = options.first_step.unwrap_or(f64::INFINITY);
     let mut walk = Walk::new(path, [first, step, options.min_step]);
+    if factors.len() > 1 {
+        walk = walk.in_even_steps();
+    }
     while path.at.load.t != target && path.steps < options.max_steps {
         walk.step(path, target, observer)?;
         path.steps += 1;
@@ -47,6 +50,7 @@ pub(super) struct Walk {
     tangent: Tangent,
     length: f64,
     shortest: f64,
+    longest: f64,
     /// Largest change of the load factor along the tangent.
     most: f64,
 }
@@ -61,7 +65,19 @@ impl Walk {
         let size = metric.length(&rate);
         let tangent = Tangent::new(rate, most.signum() / size);
         let most = most.abs();
-        Self { metric, tangent, length: size * first.min(most), shortest: size * shortest, most }
+        Self {
+            metric,
+            tangent,
+            length: size * first.min(most),
+            shortest: size * shortest,
+            longest: f64::INFINITY,
+            most,
+        }
+    }
+
+    /// The same with steps no longer than the first tangent is for the largest change of the load factor.
+    pub fn in_even_steps(self) -> Self {
+        Self { longest: self.most / self.tangent.t.abs(), ..self }
     }
 
     /// Makes a step of the path; it ends where a limit point or the target is met.
@@ -71,7 +87,7 @@ impl Walk {
             match self.advance(path, share * self.length, target, observer) {
                 Ok(Step::Accepted { iterations, turn, end }) => {
                     let growth = (ITERATIONS / iterations as f64).powi(2).min(share * TURN[1] / turn).clamp(0.5, 2.0);
-                    self.length = (growth * self.length).min(self.most / end.t.abs());
+                    self.length = (growth * self.length).min(self.longest).min(self.most / end.t.abs());
                     self.tangent = end;
                     return Ok(());
                 }
