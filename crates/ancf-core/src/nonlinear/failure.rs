@@ -41,8 +41,8 @@ pub enum Failure {
     },
     /// A motion that looks for a stable equilibrium did not come to rest.
     #[error(
-        "the structure is unstable and did not come to rest in {iterations} iterations: in the last step it moved by {moved:.1e} \
-         of its size"
+        "the structure does not come to rest: after {iterations} iterations a step still moves it by {moved:.1e} of its \
+         size"
     )]
     NotSettled {
         /// Number of iterations.

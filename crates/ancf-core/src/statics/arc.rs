@@ -138,7 +138,8 @@ impl Walk {
         }
         match way.limit() {
             Some(share) if (LIMIT..1.0 - LIMIT).contains(&share) => return Ok(Step::Shortened(share)),
-            None if report.negative_pivots != way.from.negative_pivots
+            None if length > self.shortest
+                && report.negative_pivots != way.from.negative_pivots
                 && (way.t - way.from.load.t).abs() > BIFURCATION[1] * way.t.abs() =>
             {
                 return Ok(Step::Lost);

@@ -9,7 +9,7 @@ use crate::observe::Observer;
 use super::Options;
 use super::arc::{Metric, Walk};
 use super::motion::{Start, settle};
-use super::path::{Path, difference};
+use super::path::{Load, Path, difference, product};
 
 /// Steps by arc length in which stability is lost or the load gets on far enough.
 const MOST_STEPS: usize = 50;
@@ -64,8 +64,13 @@ fn lead_on(
             Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
             // The path leads nowhere, but a motion does.
             Err(_) => {
-                let q = path.at.q.clone();
-                return jump(path, q, onwards(farthest, length), observer);
+                path.linearize()?;
+                let (q, t) = (path.at.q.clone(), onwards(farthest, length));
+                let change = path.change(&q, Load { t, held: 0.0 });
+                let mut shape = vec![0.0; q.len()];
+                path.system.solve(&change, &mut shape);
+                let stiffness = product(&change, &shape);
+                return jump(path, Start { t, q, shape: &shape, stiffness, stable: false }, observer);
             }
         }
         let back = (farthest - path.at.load.t) * direction;
@@ -75,7 +80,9 @@ fn lead_on(
         // A stable equilibrium at a smaller load lies beyond an unstable stretch that the step has passed over.
         if path.at.negative_pivots > 0 || back > 0.0 {
             let q = disturbed(path, &difference(&path.at.q, &stable));
-            return jump(path, q, onwards(farthest, BEYOND * length), observer);
+            let shape = difference(&path.at.q, path.system.model().reference());
+            let (t, stiffness) = (onwards(farthest, BEYOND * length), 2.0 * path.at.energy);
+            return jump(path, Start { t, q, shape: &shape, stiffness, stable: false }, observer);
         }
         if path.at.load.t == target || (farthest - start) * direction > passed {
             break;
@@ -85,10 +92,9 @@ fn lead_on(
     Ok(())
 }
 
-/// Moves from `q`, close to the last point, to a stable equilibrium at load factor `t`.
-fn jump(path: &mut Path<'_>, q: Vec<f64>, t: f64, observer: &mut dyn Observer) -> Result<(), Failure> {
-    let displacement = difference(&path.at.q, path.system.model().reference());
-    let start = Start { t, q, shape: &displacement, stiffness: 2.0 * path.at.energy, stable: false };
+/// Moves from a state close to the last point to a stable equilibrium.
+fn jump(path: &mut Path<'_>, start: Start<'_>, observer: &mut dyn Observer) -> Result<(), Failure> {
+    let t = start.t;
     let end = settle(path, start, MOST_MOTION, observer)?;
     let straight = difference(&end.q, &path.at.q);
     path.work += path.system.work(t, [&path.at.q, &end.q], [&straight, &straight]);

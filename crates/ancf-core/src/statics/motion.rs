@@ -78,13 +78,17 @@ pub(super) fn settle(
     let mut mass = scale * (newton.distance(&vec![0.0; q.len()], shape) / LONGEST).max(1.0);
     let mut longer = LONGER[0];
     let mut last = f64::INFINITY;
-    let mut end = None;
+    let (mut end, mut cause) = (None, None);
     while newton.iterations() < most {
         let mut next = q.clone();
         let problem = Problem { t, mass, stiffness: 1.0, origin: &q, ..Problem::default() };
         let report = match newton.solve(&mut damped, &problem, &mut next, None, observer) {
             Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
-            result => result.ok(),
+            Err(failure) => {
+                cause = Some(failure);
+                None
+            }
+            Ok(report) => Some(report),
         };
         let (moved, step) = (newton.distance(&q, &next), difference(&next, &q));
         let valid = report.filter(|report| report.negative_pivots == 0 && moved <= LONGEST);
@@ -97,7 +101,7 @@ pub(super) fn settle(
         let Some((report, there)) = lower else {
             mass *= SHORTER;
             longer = LONGER[1];
-            if mass > HEAVIEST * scale {
+            if mass > HEAVIEST * scale || !mass.is_finite() {
                 break;
             }
             continue;
@@ -124,7 +128,11 @@ pub(super) fn settle(
     path.forces += damped.forces();
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
-    end.unwrap_or(Err(Failure::NotSettled { iterations: newton.iterations(), moved: last }))
+    end.unwrap_or_else(|| match cause {
+        // No step has succeeded.
+        Some(failure) if last == f64::INFINITY => Err(failure),
+        _ => Err(Failure::NotSettled { iterations: newton.iterations(), moved: last }),
+    })
 }
 
 /// Negative pivots of the stiffness.
