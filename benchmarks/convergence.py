@@ -7,15 +7,14 @@ and the pictures into docs/elements. It takes some seconds.
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
 from matplotlib.figure import Figure
+from page import DOCS, put
 
 import ancf
 from ancf.bodies import NODAL_VECTORS
@@ -23,7 +22,6 @@ from ancf.bodies import NODAL_VECTORS
 Element = Literal["thin36", "thin48", "full48a", "full48b"]
 Membrane = Literal["projected", "full", "lobatto"]
 
-DOCS = Path(__file__).parents[1] / "docs" / "elements"
 
 MEMBRANES: dict[Element, tuple[Membrane | None, ...]] = {
     "thin36": ("projected", "full", "lobatto"),
@@ -62,25 +60,32 @@ class Case:
         return [abs(self.solve(element, membrane, mesh) / self.known() - 1) for mesh in self.meshes]
 
 
-@cache
-def strip(element: Element, membrane: Membrane | None, divisions: tuple[int, int]) -> float:
-    """Tip deflection W / L of a clamped strip under a dead end shear of P L^2 / (E I) = 4, L / h = 500, nu 0."""
+def strip(direction: Literal["y", "z"], load: float) -> Solve:
+    """Tip deflection W / L of a clamped strip under a dead end shear of P L^2 / (E I), L = 10 b = 500 h, nu 0."""
     L, b, h, E = 10.0, 1.0, 0.02, 1.2e6
-    body = ancf.Rectangle(
-        size=(L, b),
-        divisions=divisions,
-        thickness=h,
-        material=ancf.Material(E=E, nu=0.0),
-        element=element,
-        membrane=membrane,
-    )
-    model = ancf.Model(
-        bodies={"strip": body},
-        supports=[ancf.Support(at="edge:x0", clamp=True)],
-        loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, 4 * E * h**3 / 12 / L**2))],
-        probes=[ancf.Probe(name="tip", at=(L, b / 2))],
-    )
-    return float(ancf.solve_static(model).probes["tip"].value[-1, 2]) / L
+    axis = "xyz".index(direction)
+    stiffness = E * {"y": b**3 * h, "z": b * h**3}[direction] / 12
+    shear = [load * stiffness / L**2 / b if i == axis else 0.0 for i in range(3)]
+
+    @cache
+    def deflection(element: Element, membrane: Membrane | None, divisions: tuple[int, int]) -> float:
+        body = ancf.Rectangle(
+            size=(L, b),
+            divisions=divisions,
+            thickness=h,
+            material=ancf.Material(E=E, nu=0.0),
+            element=element,
+            membrane=membrane,
+        )
+        model = ancf.Model(
+            bodies={"strip": body},
+            supports=[ancf.Support(at="edge:x0", clamp=True)],
+            loads=[ancf.LineLoad(at="edge:x1", per_length=(shear[0], shear[1], shear[2]))],
+            probes=[ancf.Probe(name="tip", at=(L, b / 2), quantity="displacement")],
+        )
+        return float(ancf.solve_static(model, tolerance=1e-10).probes["tip"].value[-1, axis]) / L
+
+    return deflection
 
 
 @cache
@@ -134,7 +139,9 @@ HALVED = ((2, 1), (4, 2), (8, 4), (16, 8))
 
 CASES = (
     # Exact for the inextensible elastica.
-    Case("strip under end shear", lambda: 0.669964, STRIPS, strip),
+    Case("strip under end shear", lambda: 0.669964, STRIPS, strip("z", 4.0)),
+    # Timoshenko's beam, P L^3 / (3 E I) + 6 P L / (5 G A) with G = E / 2.
+    Case("strip bent in its plane", lambda: 3e-5 * (1 / 3 + 0.2 * 0.1**2), STRIPS, strip("y", 3e-5)),
     Case("steel cantilever", lambda: cantilever("thin48", "projected", (32, 16)), HALVED, cantilever),
     # Schwab, Gerstmayr and Meijaard, DETC2007-34754.
     Case("free square, mode 1", lambda: 13.46820, PLATES, square(clamped=False, mode=1)),
@@ -168,8 +175,10 @@ def finest() -> Iterator[str]:
 
 def draw(element: Element) -> Figure:
     """Draw errors over the number of elements along x, a panel a problem, beside lines of the orders 2 and 4."""
-    figure = Figure(figsize=(9, 6.5), layout="constrained")
-    for axes, case in zip(figure.subplots(2, 2).flat, CASES, strict=True):
+    figure = Figure(figsize=(13, 6.5), layout="constrained")
+    *panels, last = figure.subplots(2, 3).flat
+    last.axis("off")
+    for axes, case in zip(panels, CASES, strict=True):
         counts = np.array([nx for nx, _ in case.meshes])
         for membrane in MEMBRANES[element]:
             axes.loglog(counts, case.errors(element, membrane), "o-", label=membrane or element)
@@ -184,18 +193,6 @@ def draw(element: Element) -> Figure:
     return figure
 
 
-def write(name: str, mark: str, lines: Iterator[str]) -> None:
-    """Put a table between the marks of a page."""
-    page = DOCS / f"{name}.md"
-    text = re.sub(
-        rf"(<!-- {mark} -->\n).*?(<!-- /{mark} -->)",
-        lambda match: "\n".join([match[1] + next(lines), *lines, match[2]]),
-        page.read_text(encoding="utf-8"),
-        flags=re.DOTALL,
-    )
-    page.write_text(text, encoding="utf-8")
-
-
 def main() -> None:
     """Print the tables of all elements, or write them and the pictures into the pages."""
     parser = argparse.ArgumentParser(description="how every element converges with the mesh")
@@ -203,12 +200,12 @@ def main() -> None:
     arguments = parser.parse_args()
     for element in MEMBRANES:
         if arguments.write:
-            write(element, "convergence", table(element))
-            draw(element).savefig(DOCS.parent / "images" / f"convergence-{element}.png", dpi=100)
+            put(f"elements/{element}.md", "convergence", table(element))
+            draw(element).savefig(DOCS / "images" / f"convergence-{element}.png", dpi=100)
         else:
             print(f"{element}\n", *table(element), "", sep="\n")
     if arguments.write:
-        write("README", "finest", finest())
+        put("elements/README.md", "finest", finest())
     else:
         print(*finest(), sep="\n")
 

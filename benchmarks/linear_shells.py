@@ -7,21 +7,20 @@ takes some seconds.
 from __future__ import annotations
 
 import argparse
-import re
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from page import put
 
 import ancf
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENES = ROOT / "examples" / "linear_shells"
-PAGE = ROOT / "docs" / "linear-shells.md"
 
 FloatArray = NDArray[np.float64]
 Mesh = tuple[int, int]
@@ -83,17 +82,9 @@ def scene(name: str) -> Callable[[Variant, Mesh], ancf.Model]:
         document = tomllib.loads((SCENES / f"{name}.toml").read_text(encoding="utf-8"))
         given = {key: value for key, value in variant._asdict().items() if value is not None}
         document["body"]["shell"] |= given | {"divisions": mesh}
-        if variant.element == "thin48":
-            for support in document["support"]:
-                support["fix"] += twists(support["at"], support["fix"])
         return ancf.Scene.of(document).model
 
     return make
-
-
-def twists(at: str, fix: Sequence[str]) -> list[str]:
-    """Return the components of r_xy that are zero at an edge because the gradient across it is fixed all along it."""
-    return [f"r_xy{item[3:]}" for item in fix if at.startswith("edge:") and item.startswith(f"r_{at[5]}")]
 
 
 def surface(
@@ -215,11 +206,7 @@ def main() -> None:
     if not parser.parse_args().write:
         print(*table(), sep="\n")
         return
-    lines = "\n".join(table())
-    page = PAGE.read_text(encoding="utf-8")
-    marks = r"(<!-- linear -->\n).*?(<!-- /linear -->)"
-    page = re.sub(marks, lambda match: f"{match[1]}{lines}\n{match[2]}", page, flags=re.DOTALL)
-    PAGE.write_text(page, encoding="utf-8")
+    put("linear-shells.md", "linear", table())
 
 
 if __name__ == "__main__":

@@ -7,27 +7,18 @@ some seconds.
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable, Iterator, Sequence
-from pathlib import Path
 from typing import Literal, TypeAlias
 
 import numpy as np
-from linear_shells import twists
+from page import put
 from scipy.linalg import eigh
 
 import ancf
 
-PAGE = Path(__file__).resolve().parents[1] / "docs" / "modes.md"
-
 Element: TypeAlias = Literal["thin36", "thin48"]
 Row: TypeAlias = tuple[str, float, float]
 """A mode, its known frequency and the found one, in the unit of its case."""
-
-
-def support(element: Element, at: str, *fix: str) -> ancf.Support:
-    """Fix components along an edge, for `thin48` also the derivatives along it of gradients across it."""
-    return ancf.Support(at=at, fix=[*fix, *(twists(at, fix) if element == "thin48" else [])])
 
 
 ROTATING = {
@@ -62,7 +53,7 @@ def rotating_beam(element: Element) -> Iterator[Row]:
         model = ancf.Model(
             bodies={"beam": body},
             supports=[
-                support(element, "edge:x0", "r", "r_x.z"),
+                ancf.Support(at="edge:x0", fix=["r", "r_x.z", *(["r_xy.z"] if element == "thin48" else [])]),
                 ancf.Support(at="all", fix=["r.y", "r_x.y", "r_y"]),
             ],
             loads=forces,
@@ -82,10 +73,10 @@ def loaded_plate(element: Element) -> Iterator[Row]:
     model = ancf.Model(
         bodies={"plate": body},
         supports=[
-            support(element, "edge:x0", "r.z", "r_y.z"),
-            support(element, "edge:x1", "r.z", "r_y.z"),
-            support(element, "edge:y0", "r.z", "r_x.z"),
-            support(element, "edge:y1", "r.z", "r_x.z"),
+            ancf.Support(at="edge:x0", fix=["r.z", "r_y.z"]),
+            ancf.Support(at="edge:x1", fix=["r.z", "r_y.z"]),
+            ancf.Support(at="edge:y0", fix=["r.z", "r_x.z"]),
+            ancf.Support(at="edge:y1", fix=["r.z", "r_x.z"]),
             ancf.Support(at="corner:x0y0", fix=["r"]),
             ancf.Support(at="corner:x1y0", fix=["r.y"]),
         ],
@@ -119,8 +110,8 @@ def quarter(element: Element, nu: float, thickness: float, length: float, *ends:
         element=element,
     )
     planes = [
-        support(element, "edge:x0", "r.y", "r_y.y", "r_x.x", "r_x.z"),
-        support(element, "edge:x1", "r.x", "r_y.x", "r_x.y", "r_x.z"),
+        ancf.Support(at="edge:x0", symmetry="y"),
+        ancf.Support(at="edge:x1", symmetry="x"),
     ]
     return ancf.Model(bodies={"shell": body}, supports=[*planes, *ends])
 
@@ -142,7 +133,7 @@ def sanders(m: int, n: int, nu: float, h: float, length: float) -> float:
 def diaphragms(element: Element) -> Iterator[Row]:
     """Find 1000 omega R sqrt(rho / E) of the lowest modes of a cylinder on diaphragms, L / R = 2, h / R = 1/500."""
     nu, h, length = 0.3, 1 / 500, 2.0
-    ends = [support(element, f"edge:y{end}", "r.x", "r.y", "r_x.x", "r_x.y") for end in (0, 1)]
+    ends = [ancf.Support(at=f"edge:y{end}", fix=["r.x", "r.y", "r_x.x", "r_x.y"]) for end in (0, 1)]
     # Against sliding along the axis.
     model = quarter(element, nu, h, length, *ends, ancf.Support(at=(0.0, length / 2), fix=["r.z"]))
     waves = [(m, n) for m in (1, 2, 3) for n in range(0, 20, 2)]
@@ -193,11 +184,7 @@ def main() -> None:
         for line in table():
             print(line, flush=True)
         return
-    lines = "\n".join(table())
-    page = PAGE.read_text(encoding="utf-8")
-    marks = r"(<!-- modes -->\n).*?(<!-- /modes -->)"
-    page = re.sub(marks, lambda match: f"{match[1]}{lines}\n{match[2]}", page, flags=re.DOTALL)
-    PAGE.write_text(page, encoding="utf-8")
+    put("modes.md", "modes", table())
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import time
+import warnings
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 from typing import get_args
@@ -211,6 +212,7 @@ def flight(model: ancf.Model) -> NDArray[np.float64]:
 
 def conservation(quick: bool) -> None:
     """Print what a free flight keeps, at steps at which the trapezoidal rule fails."""
+    warnings.simplefilter("ignore", ancf.EnergyWarning)
     model = ancf.Model(bodies={"plate": plate(2, 0.01, 1e7)})
     step, steps = 1.5e-3, 2000 if quick else 100_000
 

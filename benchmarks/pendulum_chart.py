@@ -31,7 +31,7 @@ REMARKS = (
     f"Exudyn is {EXUDYN.partition('==')[2]}, `ObjectANCFThinPlate`, its fast build, with its default and its reduced "
     "rule of integration, generalised-alpha with fixed steps and a spectral radius of 0.9, modified Newton; it ran "
     "after our runs, as often, in random order.",
-    "What favours Exudyn: its times are those of its solver, ours include the making of the system. What favours ours: "
+    "Times include the making of the system on both sides. What favours ours: "
     "Exudyn keeps the pin as a constraint, which makes its matrices unsymmetric, and of its methods and settings only "
     "these were tried; the reference is made of our elements.",
 )

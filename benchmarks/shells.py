@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from linear_shells import twists
 from matplotlib.figure import Figure
 
 import ancf
@@ -119,12 +118,7 @@ def compare_variants() -> None:
         cases = [case for case in SZE if case.scene == name]
         for changes in variants:
             body = {"shell": document["body"]["shell"] | changes}
-            supports = document["support"]
-            if changes.get("element") == "thin48":
-                supports = [
-                    support | {"fix": support["fix"] + twists(support["at"], support["fix"])} for support in supports
-                ]
-            result = solve(ancf.Scene.of(document | {"body": body, "support": supports}))
+            result = solve(ancf.Scene.of(document | {"body": body}))
             values = [float(result.probes[case.probe].value[-1, case.component]) for case in cases]
             cells = [
                 name.replace("_", " "),

@@ -7,7 +7,6 @@ takes some seconds.
 from __future__ import annotations
 
 import argparse
-import re
 import tomllib
 from collections.abc import Callable, Iterator
 from functools import cache
@@ -16,11 +15,11 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+from page import put
 
 import ancf
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "stresses.md"
 ROLL_UP = ROOT / "examples" / "shells" / "cantilever_moment.toml"
 
 Element: TypeAlias = Literal["thin36", "thin48"]
@@ -166,13 +165,10 @@ def main() -> None:
     parser.add_argument("--write", action="store_true", help="into docs/stresses.md")
     write = parser.parse_args().write
     for mark, lines in (("convergence", convergence()), ("places", places())):
-        text = "\n".join(lines) + "\n"
         if write:
-            page = PAGE.read_text(encoding="utf-8")
-            marks = rf"(<!-- {mark} -->\n).*?(<!-- /{mark} -->)"
-            PAGE.write_text(re.sub(marks, rf"\g<1>{text}\g<2>", page, flags=re.DOTALL), encoding="utf-8")
+            put("stresses.md", mark, lines)
         else:
-            print(text)
+            print(*lines, sep="\n", end="\n\n")
 
 
 if __name__ == "__main__":

@@ -40,8 +40,9 @@ def test_run_writes_summary_and_states(scenes: Path, tmp_path: Path, capsys: pyt
     assert told.err == ""  # no bar unless it is a terminal
     found = summary(folder)
     assert list(found) == [
-        "title", "status", "reached", "reason", "advice", "counts", "seconds", "probes", "energy",
+        "title", "status", "reached", "reason", "advice", "warnings", "counts", "seconds", "probes", "energy",
     ]  # fmt: skip
+    assert found["warnings"] == []
     assert (found["title"], found["status"], found["reason"]) == ("Small pendulum", "ok", "")
     assert found["reached"] == pytest.approx(0.05)
     assert found["counts"]["elements"] == 4
@@ -118,6 +119,29 @@ def test_a_failed_run_is_written(edit: Edit, tmp_path: Path, capsys: pytest.Capt
     assert found["advice"]
     assert len(found["probes"]["A"]["t"]) == len(found["energy"]["t"]) >= 1
     assert found["advice"] in capsys.readouterr().err
+
+
+def test_energy_from_nowhere_is_told(edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A soft, thin plate that steps of 8 ms cannot follow gains most of what it fell for; with 2 ms it does not."""
+    for step, warnings in (("8e-3", 1), ("2e-3", 0)):
+        scene = edit(
+            "pendulum.toml",
+            ("E = 1e5", "E = 1e7"),
+            ("divisions = [2, 2]", "divisions = [4, 4]"),
+            ("thickness = 0.01", "thickness = 0.001"),
+            ("until = 0.05", "until = 0.32"),
+            ("step = 5e-3\noutputs = [0.025, 0.05]", f"step = {step}\nevery = 8e-3"),
+        )
+        assert main(["run", str(scene), "-o", str(tmp_path), "--quiet"]) == 0
+        found = summary(tmp_path)
+        assert len(found["warnings"]) == warnings
+        energy = {name: np.array(values) for name, values in found["energy"].items()}
+        balance = energy["kinetic"] + energy["membrane"] + energy["bending"] - energy["loads"]
+        assert (np.max(balance) > 0.5 * np.max(energy["loads"])) == bool(warnings)
+        told = [f"ancf: warning: {text}\n" for text in found["warnings"]]
+        assert "".join(told) == capsys.readouterr().err
+        gain = np.max(balance - np.minimum.accumulate(balance))
+        assert all(f"rises by {gain:.3g} J" in text for text in found["warnings"])
 
 
 def test_an_error_while_writing_leaves_the_earlier_run(
@@ -200,6 +224,40 @@ def test_an_interruption_while_the_film_is_made(edit: Edit, tmp_path: Path) -> N
         _, told = run.communicate(timeout=30)
     assert run.returncode == 130
     assert told == "ancf: interrupted\n"
+    assert sorted(path.name for path in folder.iterdir()) == ["result.npz", "summary.json"]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_of_the_imports(number: signal.Signals) -> None:
+    """Python runs this when NumPy is looked for."""
+    code = f"""
+import os, sys, ancf_command
+class Finder:
+    def find_spec(name, path=None, target=None):
+        if name == "numpy":
+            os.kill(os.getpid(), {int(number)})
+sys.meta_path.insert(0, Finder)
+sys.exit(ancf_command.main())
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    told = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, env=environment, timeout=60, check=False
+    )
+    assert (told.returncode, told.stdout, told.stderr) == (130, "", "ancf: interrupted\n")
+
+
+def test_a_killed_run_leaves_no_summary_of_an_earlier_one(edit: Edit, tmp_path: Path) -> None:
+    """And the run after it has its own."""
+    short, folder = str(edit("pendulum.toml")), tmp_path / "out"
+    assert main(["run", short, "-o", str(folder), "--quiet"]) == 0
+    before = (folder / "summary.json").read_bytes()
+    long = edit("pendulum.toml", ("until = 0.05", "until = 500"), ("outputs = [0.025, 0.05]", "every = 0.5"))
+    with start(["run", str(long), "-o", str(folder)]) as run:
+        wait_for(folder / "earlier" / "summary.json", run)
+        run.kill()
+    assert sorted(path.name for path in folder.iterdir()) == ["earlier"]
+    assert (folder / "earlier" / "summary.json").read_bytes() == before
+    assert main(["run", str(edit("pendulum.toml")), "-o", str(folder), "--quiet"]) == 0
     assert sorted(path.name for path in folder.iterdir()) == ["result.npz", "summary.json"]
 
 

@@ -18,12 +18,14 @@ FULL = ["full48a", "full48b"]
 RATES = {
     "thin36": {
         "strip under end shear": (3.0, 5.0),
+        "strip bent in its plane": (0.9, 2.0),
         "steel cantilever": (2.0, 3.2),
         "free square, mode 1": (1.7, 2.1),
         "square clamped at one edge, mode 3": (1.8, 2.1),
     },
     "thin48": {
         "strip under end shear": (2.9, 4.2),
+        "strip bent in its plane": (0.9, 2.0),
         "steel cantilever": (2.0, 3.2),
         "free square, mode 1": (3.8, 4.1),
         "square clamped at one edge, mode 3": (1.8, 2.2),

@@ -46,8 +46,8 @@ def roof() -> ancf.Model:
         supports=[
             ancf.Support(at="edge:x0", fix=["r", "r_y"]),
             # The planes of symmetry.
-            ancf.Support(at="edge:x1", fix=["r.x", "r_y.x", "r_x.y", "r_x.z"]),
-            ancf.Support(at="edge:y0", fix=["r.z", "r_x.z", "r_y.x", "r_y.y"]),
+            ancf.Support(at="edge:x1", symmetry="x"),
+            ancf.Support(at="edge:y0", symmetry="z"),
         ],
         loads=[ancf.Force(at="corner:x1y0", force=(0.0, -750.0, 0.0))],
         probes=[ancf.Probe(name="middle", at=(TOP, 0.0), quantity="displacement")],

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import ancf
+from ancf.cli import main
 from ancf.run import Method
 
 # Those for flexible bodies.
@@ -49,7 +50,8 @@ def test_rejections_are_counted_by_cause() -> None:
     burst = ancf.Pressure(pressure=1e9, history=[(0.1, 0.0), (0.11, 1.0)])
     held = [ancf.Support(at="edge:x0", clamp=True)]
     model = ancf.Model(bodies=pendulum().bodies, supports=held, loads=[burst])
-    counts = ancf.simulate(model, until=0.3, step=0.01, throw=False).counts
+    with pytest.warns(ancf.EnergyWarning):
+        counts = ancf.simulate(model, until=0.3, step=0.01, throw=False).counts
     assert counts["rejected"] == counts["unsolved"] + counts["not_finite"] == 1
 
 
@@ -57,7 +59,8 @@ def test_explicit_steps_above_the_limit_are_refused() -> None:
     with pytest.raises(ancf.SolveError, match="above the limit") as failed:
         ancf.simulate(pendulum(), until=0.3, step=0.05, method="verlet")
     assert len(failed.value.result.t) == 0
-    ancf.simulate(pendulum(), until=0.1, step=0.05, method="verlet", force=True, throw=False)
+    with pytest.warns(ancf.EnergyWarning, match="comes from nowhere"):
+        ancf.simulate(pendulum(), until=0.1, step=0.05, method="verlet", force=True, throw=False)
 
 
 def test_damping_slows_a_free_body_exponentially() -> None:
@@ -77,6 +80,17 @@ def test_a_shaken_corner_moves_as_prescribed() -> None:
     np.testing.assert_allclose(result.q[:, 1], 0.01 * np.sin(4 * np.pi * result.t), atol=1e-8)
     balance = result.energy.kinetic + result.energy.membrane + result.energy.bending - result.energy.loads
     assert abs(balance[-1]) < 1e-3 * result.energy.loads[-1]
+
+
+def test_what_drags_a_stiff_plate_gives_its_energy() -> None:
+    """By mean forces, not by those at the mean of two positions, in which a body that has turned is strained."""
+    steel = ancf.Material(E=5e9, nu=0.3, density=1000.0)
+    plate = ancf.Rectangle(size=(0.3, 0.1), divisions=(1, 1), thickness=0.003, material=steel, membrane="full")
+    drag = ancf.Support(at="corner:x0y0", fix=["r"], translation=[(0, 0, 0, 0), (0.2, 0.1, 0, 0.2)])
+    model = ancf.Model(bodies={"plate": plate}, supports=[drag])
+    energy = ancf.simulate(model, until=0.4, step=2e-3, method="energy_momentum").energy
+    balance = energy.kinetic + energy.membrane + energy.bending - energy.loads
+    assert np.max(np.abs(balance)) < 5e-3 * np.max(energy.kinetic)
 
 
 def test_a_turned_corner_carries_its_gradient() -> None:
@@ -122,13 +136,28 @@ def test_a_broken_checkpoint_is_refused(tmp_path: Path) -> None:
     checkpoint = tmp_path / "checkpoint"
     ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=checkpoint)
     checkpoint.write_bytes(checkpoint.read_bytes()[:-8])
-    with pytest.raises(ancf.InputError, match="whole checkpoint file"):
+    with pytest.raises(ancf.InputError, match=r"checkpoint: is \d+ bytes; allowed is a whole checkpoint file"):
         ancf.simulate(pendulum(), until=0.01, step=1e-3, resume=checkpoint)
     ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=checkpoint)
     with pytest.raises(ancf.InputError, match="nodal coordinates"):
         ancf.simulate(pendulum(4), until=0.01, step=1e-3, resume=checkpoint)
     with pytest.raises(ancf.InputError, match="method"):
         ancf.simulate(pendulum(), until=0.01, step=1e-3, method="esdirk", resume=checkpoint)
+
+
+def test_the_message_about_a_checkpoint_names_the_file(
+    scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "no such file"
+    arguments = ["run", str(scenes / "pendulum.toml"), "-o", str(tmp_path / "out"), "--resume", str(file)]
+    assert main(arguments) == 2
+    assert capsys.readouterr().err == f"ancf: {file}: cannot be read: No such file or directory\n"
+    file.write_bytes(b"something else")
+    assert main(arguments) == 2
+    assert capsys.readouterr().err == f"ancf: {file}: is 14 bytes; allowed is a whole checkpoint file\n"
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(OSError, match=f"{tmp_path}: "):
+        ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=tmp_path)
 
 
 def test_a_checkpoint_of_another_model_is_refused(tmp_path: Path) -> None:

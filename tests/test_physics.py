@@ -39,6 +39,41 @@ def cantilever(divisions: tuple[int, int], membrane: Membrane, curvature: Curvat
     )
 
 
+@pytest.mark.parametrize(
+    ("element", "membrane", "tolerance"),
+    [
+        ("thin36", "projected", 1e-4),
+        ("thin36", "full", 3e-4),
+        ("thin36", "lobatto", 1e-3),
+        ("thin48", "projected", 1e-4),
+        ("thin48", "full", 1e-4),
+    ],
+)
+@pytest.mark.parametrize("elements", [1, 2, 8])
+def test_a_strip_of_one_element_across_bends_in_its_plane_as_a_beam(
+    element: Any, membrane: Membrane, tolerance: float, elements: int
+) -> None:
+    """Timoshenko's beam, whose section is held at one end but may shear there, which a clamped one may not."""
+    L, b, h, E, P = 1.0, 0.1, 0.002, 1e7, 1e-7
+    strip = ancf.Rectangle(
+        size=(L, b),
+        divisions=(elements, 1),
+        thickness=h,
+        material=ancf.Material(E=E, nu=0.0),
+        element=element,
+        membrane=membrane,
+    )
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", fix=["r", "r_y", "r_x.z"])],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, P / b, 0.0))],
+        probes=[ancf.Probe(name="tip", at=(L, b / 2), quantity="displacement")],
+    )
+    tip = ancf.solve_static(model, tolerance=1e-10).probes["tip"].value[-1, 1]
+    bending, shear = P * L**3 / (3 * E * h * b**3 / 12), 1.2 * P * L / (E / 2 * h * b)
+    assert tip == pytest.approx(bending + shear, rel=tolerance)
+
+
 def pendulum(divisions: tuple[int, int], acceleration: float = -9.81) -> ancf.Model:
     """Rubber, hung at a corner; Dufva and Shabana (2005)."""
     plate = ancf.Rectangle(size=(0.3, 0.3), divisions=divisions, thickness=0.01, material=RUBBER, membrane="full")

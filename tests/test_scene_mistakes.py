@@ -38,7 +38,7 @@ PENDULUM = [
     ('"corner:x0y0"', "[0.4, 0]", "support.0.at = [0.4, 0.0]:", "0.3"),
     ('["r"]', '["r_z"]', 'support.0.fix.0 = "r_z": allowed are r, r_x, r_y and their components, as r.x', ""),
     ('["r"]', '"r"', 'support.0.fix = "r": must be a list', ""),
-    ('fix = ["r"]', "", "support.0.fix: give either the coordinates to fix or clamp = true", ""),
+    ('fix = ["r"]', "", "support.0.fix: give either the coordinates to fix, clamp = true, or symmetry", ""),
     ('body = "plate"\nat = "c', 'body = "plat"\nat = "c', 'support.0.body = "plat": allowed is plate', ""),
     ('"gravity"', '"gravitty"', 'load.0.kind = "gravitty": allowed are gravity, force, line, pressure, moment', ""),
     ("[0, 0, -9.81]", "[0, -9.81]", "load.0.acceleration = [0, -9.81]: must be a list of 3 numbers", ""),

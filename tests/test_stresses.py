@@ -4,10 +4,16 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import ancf
+from ancf.places import EDGES
+from ancf.probes import Quantity
+
 ROOT = Path(__file__).parents[1]
+GAUSS = 0.5 - 3**-0.5 / 2
 
 
 @pytest.fixture(scope="module")
@@ -44,3 +50,41 @@ def test_moments_are_best_at_gauss_points_and_shear_in_the_middles(printed: str)
         elif name.endswith(": Qx"):
             assert middles <= 0.1, (name, element)
             assert nodes < 1.5, (name, element)
+
+
+@pytest.mark.parametrize("element", ["thin36", "thin48", "full48a"])
+@pytest.mark.parametrize("edge", EDGES)
+def test_signs_under_a_moment_at_an_edge(edge: str, element: Any) -> None:
+    """A plate without lateral contraction, clamped opposite: E h^3 / 12 kappa = M, stress -+6 M / h^2 at the faces."""
+    h, E, M = 0.02, 2e9, 30.0
+    across, end = "xy".index(edge[5]), int(edge[6])
+    body = ancf.Rectangle(
+        size=(1.0, 1.0),
+        divisions=(8, 8),
+        thickness=h,
+        material=ancf.Material(E=E, nu=0.0),
+        element=element,
+    )
+    model = ancf.Model(
+        bodies={"plate": body},
+        supports=[ancf.Support(at=f"edge:{edge[5]}{1 - end}", clamp=True)],
+        loads=[ancf.Moment(at=edge, per_length=M)],
+    )
+    result = ancf.solve_static(model)
+    points = [(0.375 + 0.125 * GAUSS, 0.375 + 0.125 * GAUSS)]
+
+    def found(quantity: Quantity) -> float:
+        return float(result.evaluate("plate", points, quantity)[-1, 0, across])
+
+    # Towards the normal, Z at rest: the free edge goes up.
+    assert (
+        result.evaluate("plate", [(0.5 + (end - 0.5) * (1 - across), 0.5 + (end - 0.5) * across)], "displacement")[
+            -1, 0, 2
+        ]
+        > 0
+    )
+    if element != "full48a":  # which locks
+        assert found("curvature") == pytest.approx(12 * M / (E * h**3), rel=5e-3)
+    assert found("moment") == pytest.approx(M, rel=5e-3)
+    assert found("stress_top") == pytest.approx(-6 * M / h**2, rel=5e-3)
+    assert found("stress_bottom") == pytest.approx(6 * M / h**2, rel=5e-3)

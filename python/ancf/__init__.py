@@ -26,6 +26,7 @@ same from a file, and ``ancf run scene.toml -o folder`` runs such a file.
 """
 
 from ancf._core import __version__
+from ancf.balance import EnergyWarning
 from ancf.bodies import Annulus, Cylinder, Rectangle, Sphere
 from ancf.errors import InputError, Interrupted, Mistake, SolveError
 from ancf.loads import Force, Gravity, LineLoad, Moment, Pressure
@@ -46,6 +47,7 @@ __all__ = [
     "Cylinder",
     "Dynamic",
     "Energy",
+    "EnergyWarning",
     "Force",
     "Gravity",
     "InputError",

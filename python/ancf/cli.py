@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import warnings
 from collections.abc import Sequence
 
+from ancf.balance import EnergyWarning
 from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, plan, reproduce, run, stability
 from ancf.commands.signals import was_stopped, watch_signals
 from ancf.errors import InputError
@@ -27,6 +29,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     options = _parser().parse_args(arguments)
     watch_signals()
+    # Commands tell them in their own way.
+    warnings.simplefilter("ignore", EnergyWarning)
     try:
         status: int = options.call(options)
     except InputError as error:

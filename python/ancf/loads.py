@@ -148,7 +148,8 @@ class Moment(_Load, OnBody):
     at : str
         "edge:x0", "edge:x1", "edge:y0" or "edge:y1".
     per_length : float
-        N m/m.
+        N m/m. Where it is positive it turns the outward direction of the edge towards the normal ``r_x x r_y``, and is
+        the "moment" across the edge that a `Probe` there records.
     history : "constant", "ramp" or sequence of pairs, optional
         The factor on the load, see `ancf.loads`.
 

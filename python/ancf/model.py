@@ -95,6 +95,8 @@ class Model(Input):
                 with mistakes.gather(key, index):
                     if isinstance(item, OnBody) and isinstance(at, tuple):
                         _check_inside(core, item.body, at)
+                    if isinstance(item, Support):
+                        item.check_symmetry(core, self.bodies[item.body].element)
         mistakes.check()
         self._assembled = self.assemble("constant")
         return self
@@ -125,7 +127,7 @@ class Model(Input):
         core = self._assemble_bodies()
         for index, support in enumerate(self.supports):
             with from_core("supports", index):
-                support.add(core)
+                support.add(core, self.bodies[support.body].element)
         for index, load in enumerate(self.loads):
             with from_core("loads", index):
                 load.add(core, history)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -24,6 +25,7 @@ STATES = "result.npz"
 PICTURE = "plate.png"
 FILMS = ("motion.gif", "motion.mp4")
 FIELDS = "fields.pvd"
+EARLIER = "earlier"
 
 
 def make_folder(folder: Path) -> list[Path]:
@@ -70,6 +72,27 @@ def remove_extras(folder: Path) -> None:
         path.unlink(missing_ok=True)
     with suppress(OSError):
         fields.rmdir()
+
+
+@contextmanager
+def earlier_aside(folder: Path) -> Iterator[None]:
+    """Keep the results of an earlier run in a folder of their own until the `with` statement ends.
+
+    So a run that is killed leaves no summary that could be taken for its own, and does not lose what was there before.
+    """
+    aside = folder / EARLIER
+    for name in (SUMMARY, STATES):
+        if (folder / name).exists():
+            aside.mkdir(exist_ok=True)
+            (folder / name).replace(aside / name)
+    try:
+        yield
+    finally:
+        if aside.is_dir():
+            if not (folder / SUMMARY).exists():
+                for path in aside.iterdir():
+                    path.replace(folder / path.name)
+            shutil.rmtree(aside, ignore_errors=True)
 
 
 @contextmanager
@@ -131,6 +154,7 @@ def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
         "reached": len(result.frequency) if isinstance(result, ModalResult) else _plain(result.reached),
         "reason": result.reason,
         "advice": result.advice,
+        "warnings": [] if isinstance(result, ModalResult) else list(result.warnings),
         "counts": _plain(result.counts),
         "seconds": _plain(result.seconds),
     }

@@ -88,7 +88,8 @@ class Probe(OnBody):
         "_top", "_middle" and "_bottom": "stress", second Piola-Kirchhoff, and "cauchy_stress", components xx, yy, xy;
         "principal_stress", the larger and the smaller principal value of the Cauchy stress in the surface; "von_mises"
         of it. Components are those of the orthonormal frame of the shape at rest: x along r_x, y across it in the
-        tangent plane; of Cauchy stresses, of the same frame of the deformed surface.
+        tangent plane; of Cauchy stresses, of the same frame of the deformed surface. Curvature is positive towards the
+        normal, so that a positive moment M presses the top: stress_top = N / h - 6 M / h**2, N the membrane force.
 
     Raises
     ------

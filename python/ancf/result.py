@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ancf import _core
+from ancf.balance import balance_warnings
 from ancf.model import Model
 from ancf.probes import Probe, Quantity
 from ancf.run import Dynamic, Static
@@ -153,6 +154,13 @@ class Result:
     def states(self) -> int:
         """How many states there are."""
         return len(self.t)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful about a motion: where and how far its energy balance is off, and what to try."""
+        if not isinstance(self.run, Dynamic):
+            return ()
+        return balance_warnings(self.run, self.energy, any(support.moves for support in self.model.supports))
 
     def evaluate(self, body: str, points: ArrayLike, quantity: Quantity) -> FloatArray:
         """Return a quantity at material points in every state.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeAlias
 
@@ -282,25 +283,46 @@ class Dynamic(_Run):
         resume: str | os.PathLike[str] | None = None,
     ) -> _core.Run:
         """Run the compiled model."""
-        return _core.simulate(
-            core,
-            until=self.until,
-            steps=self._steps(),
-            method=self.method,
-            alpha=self.alpha,
-            rho_inf=self.rho_inf,
-            lumped=self.lumped,
-            outputs=self.times(),
-            velocity=velocity,
-            newton=self.newton,
-            tolerance=self.tolerance,
-            max_iterations=self.max_iterations,
-            reuse=self.reuse,
-            checkpoint=checkpoint,
-            resume=resume,
-            threads=threads,
-            progress=progress,
-        )
+        with _checkpoint(resume):
+            return _core.simulate(
+                core,
+                until=self.until,
+                steps=self._steps(),
+                method=self.method,
+                alpha=self.alpha,
+                rho_inf=self.rho_inf,
+                lumped=self.lumped,
+                outputs=self.times(),
+                velocity=velocity,
+                newton=self.newton,
+                tolerance=self.tolerance,
+                max_iterations=self.max_iterations,
+                reuse=self.reuse,
+                checkpoint=checkpoint,
+                resume=resume,
+                threads=threads,
+                progress=progress,
+            )
+
+
+@contextmanager
+def _checkpoint(path: str | os.PathLike[str] | None) -> Iterator[None]:
+    """Name the file in the errors of a checkpoint."""
+    if path is None:
+        yield
+        return
+    name = os.fspath(path)
+    try:
+        with open(name, "rb"):
+            pass
+    except OSError as error:
+        raise InputError(Mistake((name,), f"cannot be read: {error.strerror}")) from None
+    try:
+        yield
+    except _core.InputError as error:
+        if error.argument != "checkpoint":
+            raise
+        raise InputError(Mistake((name,), f"is {error.value}; allowed is {error.allowed}")) from None
 
 
 class Modes(Input):

@@ -30,6 +30,7 @@ from ancf.solve import solve
 from ancf.supports import Support
 
 _TABLES = {"bodies": "body", "supports": "support", "loads": "load", "probes": "probe"}
+_RUN_KEYS = {*Static.model_fields, *Dynamic.model_fields, *Modes.model_fields}
 _ANY_MATERIAL = Material(E=1.0, nu=0.0)
 
 
@@ -249,6 +250,8 @@ def _in_scene(mistake: Mistake, material_names: Mapping[str, str]) -> Mistake:
             path = ("material", material_names[str(name)], *rest)
         case (first, *rest) if first in _TABLES:
             path = (_TABLES[str(first)], *rest)
-        case _:
+        case (first, *_) if first in _RUN_KEYS:
             path = ("run", *mistake.path)
+        case _:
+            path = mistake.path
     return replace(mistake, path=path)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any, Literal
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ancf import _core
+from ancf.balance import EnergyWarning
 from ancf.errors import InputError, Interrupted, Mistake, SolveError, from_core, show
 from ancf.model import Model
 from ancf.progress import Progress, meter
@@ -140,6 +142,11 @@ newton, tolerance, max_iterations, reuse : optional
         If the run fails; `SolveError.result` holds what it had.
     Interrupted
         On Ctrl-C; `Interrupted.result` holds what it had.
+
+    Warns
+    -----
+    EnergyWarning
+        If the energy balance is off, so that the motion cannot be right; also in `Result.warnings`.
     """
     run = Dynamic(
         until=until,
@@ -184,6 +191,8 @@ def solve(
         if call and outcome.exception is None:
             call(outcome.reached)
     result = Result.of(model, run, outcome)
+    for doubt in result.warnings:
+        warnings.warn(doubt, EnergyWarning, stacklevel=3)
     place = f"{run.parameter} = {result.reached:.6g} {run.unit}".rstrip()
     if outcome.exception is not None:
         raise _stopped(outcome.exception, place, result)

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self, TypeAlias
 
+import numpy as np
 from pydantic import PlainValidator, model_validator
 
 from ancf import _core
 from ancf.bodies import NODAL_VECTORS
-from ancf.errors import InputError, Mistake, Mistakes
+from ancf.errors import InputError, Mistake, Mistakes, one_of, show
 from ancf.inputs import Input, OnBody, Positive, Vector, table
-from ancf.places import Anywhere
+from ancf.places import EDGES, Anywhere
+
+Axis: TypeAlias = Literal["x", "y", "z"]
+
+_FLAT = 1e-6
+"""How far, relative to its size, a surface may be from its plane of symmetry: derivatives of maps are differences."""
 
 
 class Shake(Input):
@@ -63,6 +69,9 @@ class Support(OnBody):
         natural coordinates.
     clamp : bool, default False
         Fix the position and all gradients instead.
+    symmetry : {"x", "y", "z"}, optional
+        Fix instead what a plane of symmetry normal to this global axis fixes at an edge that lies in it: of r, of the
+        gradient along the edge and of r_z the component along the axis, of the gradient across it and r_xy the others.
     translation : sequence of four floats, optional
         Motion of the support: rows [t, x, y, z], s and m, joined by a smooth curve that begins at rest with zero and
         goes on with constant velocity after the last. In statics supports stay where they are.
@@ -74,26 +83,54 @@ class Support(OnBody):
     Raises
     ------
     InputError
-        If neither or both of `fix` and `clamp` are given, or a value is impossible.
+        If not one of `fix`, `clamp` and `symmetry` is given, or a value is impossible.
 
     Examples
     --------
     >>> pin = Support(at="corner:x0y0", fix=["r"])
     >>> wall = Support(at="edge:x0", clamp=True)
+    >>> cut = Support(at="edge:x1", symmetry="x")
     """
 
     at: Anywhere
     fix: Sequence[str] = ()
     clamp: bool = False
+    symmetry: Axis | None = None
     translation: Sequence[tuple[float, float, float, float]] | None = None
     shake: Annotated[Shake | None, PlainValidator(table(Shake))] = None
     rotation: Annotated[Rotation | None, PlainValidator(table(Rotation))] = None
 
     @model_validator(mode="after")
-    def _fix_or_clamp(self) -> Self:
-        if self.clamp == bool(self.fix):
-            raise InputError(Mistake(("fix",), "give either the coordinates to fix or clamp = true"))
+    def _one_way(self) -> Self:
+        if bool(self.fix) + self.clamp + (self.symmetry is not None) != 1:
+            raise InputError(Mistake(("fix",), "give either the coordinates to fix, clamp = true, or symmetry"))
+        if self.symmetry is not None:
+            if self.at not in EDGES:
+                raise InputError(Mistake(("at",), f"with symmetry {one_of(EDGES, self.at)}", show(self.at)))
+            if self.moves:
+                raise InputError(Mistake(("symmetry",), "a plane of symmetry cannot be moved", show(self.symmetry)))
         return self
+
+    @property
+    def moves(self) -> bool:
+        """Whether its motion is prescribed."""
+        return bool(self.translation or self.shake or self.rotation)
+
+    def coordinates(self, element: str) -> Sequence[str]:
+        """Return the nodal vectors, or components of them, that are fixed; of a clamp all.
+
+        The field of a body is its own mirror image in a plane of symmetry. So across the plane the component along its
+        normal is odd, of r as of what is differentiated along the edge, and the others are even; a derivative across it
+        turns that round.
+        """
+        vectors = NODAL_VECTORS[element]
+        if self.clamp:
+            return vectors
+        if self.symmetry is None:
+            return self.fix
+        normal, inside = self.symmetry, [axis for axis in "xyz" if axis != self.symmetry]
+        turned = (f"r_{str(self.at)[5]}", "r_xy")
+        return [f"{vector}.{axis}" for vector in vectors for axis in (inside if vector in turned else normal)]
 
     def check_coordinates(self, element: str) -> None:
         """Raise `InputError` if the nodes of the element have no such coordinates."""
@@ -105,19 +142,37 @@ class Support(OnBody):
                 mistakes.add(("fix", index), f"allowed are {', '.join(vectors)} and their components, as r.x", name)
         mistakes.check()
 
-    def add(self, core: _core.Model) -> None:
+    def check_symmetry(self, core: _core.Model, element: str) -> None:
+        """Raise `InputError` if the edge is not in its plane of symmetry or the body does not cross it squarely."""
+        if self.symmetry is None:
+            return
+        side, end = str(self.at)[5], str(self.at)[6]
+        natural = core.nodes(self.body)[:, "xy".index(side)]
+        edge = natural == (natural.max() if end == "1" else natural.min())
+        vectors = core.reference()[core.vectors(self.body)[:, :, None] + np.arange(3, dtype=np.uint64)]
+        names = NODAL_VECTORS[element]
+        size = np.ptp(vectors[:, 0], axis=0).max()
+        largest = dict(zip(names, np.linalg.norm(vectors, axis=2).max(axis=0), strict=True))
+        scales = largest | {"r": size, "r_xy": largest["r_x"] * largest["r_y"] / size}
+        for name in self.coordinates(element):
+            vector, _, axis = name.partition(".")
+            values = vectors[edge, names.index(vector), "xyz".index(axis)]
+            off = np.ptp(values) if vector == "r" else np.abs(values).max()
+            if off > _FLAT * scales[vector]:
+                allowed = f"the edge must lie in a plane normal to this axis and the body cross it squarely, see {name}"
+                raise InputError(Mistake(("symmetry",), allowed, show(self.symmetry)))
+
+    def add(self, core: _core.Model, element: str) -> None:
         """Add the support to the compiled model."""
-        if self.translation or self.shake or self.rotation:
-            shake, turn = self.shake, self.rotation
-            core.move_support(
-                self.body,
-                self.at,
-                self.fix,
-                translation=self.translation,
-                shake=(shake.amplitude, shake.frequency) if shake else None,
-                rotation=(turn.point, turn.axis, turn.angle) if turn else None,
-            )
-        elif self.clamp:
-            core.clamp(self.body, self.at)
-        else:
-            core.fix(self.body, self.at, self.fix)
+        if not self.moves:
+            core.fix(self.body, self.at, self.coordinates(element))
+            return
+        shake, turn = self.shake, self.rotation
+        core.move_support(
+            self.body,
+            self.at,
+            self.coordinates(element),
+            translation=self.translation,
+            shake=(shake.amplitude, shake.frequency) if shake else None,
+            rotation=(turn.point, turn.axis, turn.angle) if turn else None,
+        )

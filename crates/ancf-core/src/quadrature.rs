@@ -55,6 +55,21 @@ fn mirrored(points: &[f64], weights: &[f64], middle: Option<f64>) -> Vec<(f64, f
     rule
 }
 
+/// The Legendre polynomials of degree 0 to 2, orthonormal on `[0, 1]`.
+///
+/// # Panics
+///
+/// If a higher degree is asked for.
+pub fn legendre(degree: usize, at: f64) -> f64 {
+    let t = 2.0 * at - 1.0;
+    match degree {
+        0 => 1.0,
+        1 => 3.0_f64.sqrt() * t,
+        2 => 5.0_f64.sqrt() * (1.5 * t * t - 0.5),
+        _ => panic!("no Legendre polynomial of degree {degree}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -174,9 +174,7 @@ impl Model {
     ) -> PyResult<()> {
         let place = Self::place(py, at)?;
         let id = checked(py, self.model.find(body))?;
-        let named = coordinates.iter().map(|name| checked(py, name.parse())).collect::<PyResult<Vec<Fix>>>()?;
-        let all = self.model.body(id).nodal_vectors().iter().map(|vector| Fix { vector: *vector, component: None });
-        let fixes = if named.is_empty() { all.collect() } else { named };
+        let fixes = coordinates.iter().map(|name| checked(py, name.parse())).collect::<PyResult<Vec<Fix>>>()?;
         let mut motion = SupportMotion::default();
         for (axis, direction) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
             if let Some(rows) = &translation {
@@ -191,12 +189,6 @@ impl Model {
             motion.rotation = Some((point, axis, checked(py, Course::table(angle))?));
         }
         checked(py, self.edit().move_support(id, place, &fixes, motion))
-    }
-
-    fn clamp(&mut self, py: Python<'_>, body: &str, at: At) -> PyResult<()> {
-        let place = Self::place(py, at)?;
-        let id = checked(py, self.model.find(body))?;
-        checked(py, self.edit().clamp(id, place))
     }
 
     fn add_gravity(&mut self, py: Python<'_>, acceleration: [f64; 3], history: Factors) -> PyResult<()> {

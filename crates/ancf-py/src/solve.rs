@@ -67,10 +67,9 @@ impl Saved {
     fn write(&mut self, make: &dyn Fn(&[State]) -> Vec<u8>) -> std::io::Result<()> {
         let mut temporary = self.path.clone().into_os_string();
         temporary.push(".new");
-        std::fs::write(&temporary, make(&self.states))?;
-        std::fs::rename(temporary, &self.path)?;
+        let done = std::fs::write(&temporary, make(&self.states)).and_then(|()| std::fs::rename(temporary, &self.path));
         self.written = Some(Instant::now());
-        Ok(())
+        done.map_err(|error| std::io::Error::new(error.kind(), format!("{}: {error}", self.path.display())))
     }
 }
 

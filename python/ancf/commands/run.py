@@ -13,10 +13,19 @@ from ancf.commands.signals import deferred_signals
 from ancf.errors import InputError, Interrupted, Mistake
 from ancf.fields import check_fields
 from ancf.modal import ModalResult
-from ancf.output import FIELDS, PICTURE, make_folder, remove_extras, remove_folders, replacing, write_result
+from ancf.output import (
+    FIELDS,
+    PICTURE,
+    earlier_aside,
+    make_folder,
+    remove_extras,
+    remove_folders,
+    replacing,
+    write_result,
+)
 from ancf.report import describe
 from ancf.result import Result
-from ancf.scene import load_scene
+from ancf.scene import Scene, load_scene
 
 if TYPE_CHECKING:
     from ancf.commands import Subparsers
@@ -56,40 +65,41 @@ def call(options: argparse.Namespace) -> int:
         check_film(film)
     if options.fields:
         check_fields(folder / FIELDS)
-    planned = None
-    if options.tol is not None:
-        planned = make_plan(options, folder)
-    made = make_folder(folder)
-    try:
-        # The chosen pilot was a whole run.
-        result = (
-            planned.result
-            if planned is not None
-            else scene.solve(
-                checkpoint=options.checkpoint or options.resume,
-                resume=options.resume,
-                threads=options.threads,
-                progress=not options.quiet and sys.stderr is not None,
-                throw=False,
-            )
-        )
-    except InputError:
-        remove_folders(made)
-        raise
-    except Interrupted as stopped:
-        write_result(folder, scene.title, stopped.result)
-        remove_extras(folder)
-        return complain(f"{stopped}; the results up to there are in {folder}", INTERRUPTED)
-    with deferred_signals():
-        write_result(folder, scene.title, result)
-        remove_extras(folder)
+    with earlier_aside(folder):
+        planned = None if options.tol is None else make_plan(options, folder)
+        made = make_folder(folder)
+        try:
+            result = _solve(options, scene) if planned is None else planned.result  # the chosen pilot was a whole run
+        except InputError:
+            remove_folders(made)
+            raise
+        except Interrupted as stopped:
+            write_result(folder, scene.title, stopped.result)
+            remove_extras(folder)
+            return complain(f"{stopped}; the results up to there are in {folder}", INTERRUPTED)
+        with deferred_signals():
+            write_result(folder, scene.title, result)
+            remove_extras(folder)
     if result.states:
         _write_extras(options, scene.title, result, film)
     if not options.quiet:
         print(describe(scene.title, result))
+    if isinstance(result, Result):
+        for doubt in result.warnings:
+            complain(f"warning: {doubt}", OK)
     if result.status == "failed":
         return complain(f"the run failed: {result.reason}\ntry: {result.advice}", FAILED)
     return OK if planned is None else promise(planned, folder)
+
+
+def _solve(options: argparse.Namespace, scene: Scene) -> Result | ModalResult:
+    return scene.solve(
+        checkpoint=options.checkpoint or options.resume,
+        resume=options.resume,
+        threads=options.threads,
+        progress=not options.quiet and sys.stderr is not None,
+        throw=False,
+    )
 
 
 def _write_extras(options: argparse.Namespace, title: str, result: Result | ModalResult, film: Path | None) -> None:

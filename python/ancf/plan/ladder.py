@@ -11,7 +11,6 @@ from ancf.bodies import NODAL_VECTORS, Plate
 from ancf.model import Model
 from ancf.run import Dynamic, Method
 from ancf.scene import Scene
-from ancf.supports import Support
 
 COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 """Elements along a side, times the fewest that put nodes where supports need them."""
@@ -176,11 +175,7 @@ def apply(scene: Scene, choice: Choice) -> Scene:
         name: _remake(body, rung.family, divisions)
         for (name, body), divisions in zip(model.bodies.items(), rung.divisions, strict=True)
     }
-    supports = [
-        _fitting(support, bodies[support.body] if support.body else next(iter(bodies.values())))
-        for support in model.supports
-    ]
-    made = Model(bodies=bodies, supports=supports, loads=model.loads, probes=model.probes)
+    made = Model(bodies=bodies, supports=model.supports, loads=model.loads, probes=model.probes)
     run = scene.run
     if stepping is not None:
         assert isinstance(run, Dynamic)
@@ -193,13 +188,6 @@ def apply(scene: Scene, choice: Choice) -> Scene:
             **outputs(run),
         )
     return replace(scene, model=made, run=run)
-
-
-def _fitting(support: Support, body: Plate) -> Support:
-    """Return a support without the vectors that the element does not have."""
-    known = NODAL_VECTORS[body.element]
-    fix = [name for name in support.fix if name.partition(".")[0] in known]
-    return support if len(fix) == len(support.fix) else support.model_copy(update={"fix": fix})
 
 
 def _remake(body: Plate, family: Family, divisions: tuple[int, int]) -> Plate:

@@ -6,17 +6,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from ancf.bodies import Cylinder, Plate, Rectangle
 from ancf.inputs import Input
 from ancf.loads import Force, LineLoad, Moment
 from ancf.model import Model
-from ancf.plan.ladder import CONTINUOUS
 from ancf.scene import Scene
-from ancf.supports import Support
+from ancf.supports import Axis, Support
 
-_NORMALS = {("rectangle", 0): 0, ("rectangle", 1): 1, ("cylinder", 1): 2}
+_NORMALS: dict[tuple[str, int], Axis] = {("rectangle", 0): "x", ("rectangle", 1): "y", ("cylinder", 1): "z"}
 """Direction in space of a mirror across the middle of a natural coordinate."""
 
 
@@ -24,10 +21,7 @@ def halved(scene: Scene) -> tuple[Scene, list[int]]:
     """Return the part of a scene on the low side of its mirrors, and the natural coordinates that they halve.
 
     A plane across the middle of a rectangle, or of the length of a cylinder, is a mirror if loads and supports are
-    their own images and all probes lie on its low side. Nodes on it stay in it, and their gradients across it normal to
-    it.
-    The part is made of `thin48`, which has all nodal vectors of thin elements: `ancf.plan.ladder.apply` leaves out of
-    the support on the mirror what another element does not have.
+    their own images and all probes lie on its low side.
     Whether the whole also *moves* symmetrically is another matter, see `ancf.plan.planner`.
 
     Parameters
@@ -59,22 +53,17 @@ def _halved(scene: Scene, axis: int) -> Scene | None:
     middle = 0.5 * (low + high)
     if normal is None or any(probe.at[axis] > middle for probe in model.probes):
         return None
-    mirror = _Mirror(axis, normal, low + high)
+    mirror = _Mirror(axis, "xyz".index(normal), low + high)
     supports = mirror.low_half(list(model.supports))
     loads = mirror.low_half(list(model.loads))
     if supports is None or loads is None:
         return None
-    across, along = ("r_x", "r_y") if axis == 0 else ("r_y", "r_x")
-    here, *others = np.roll(list("xyz"), -normal)
-    odd = [f"{vector}.{other}" for vector in (across, "r_xy") for other in others]
-    fix = [f"r.{here}", f"{along}.{here}", *odd]
-    edge = Support(body=name, at=f"edge:{'xy'[axis]}1", fix=fix)
+    edge = Support(body=name, at=f"edge:{'xy'[axis]}1", symmetry=normal)
     bodies = {name: _half_body(body, axis, middle)}
     return replace(scene, model=Model(bodies=bodies, supports=[*supports, edge], loads=loads, probes=model.probes))
 
 
 def _half_body(body: Plate, axis: int, middle: float) -> Plate:
-    body = body.model_copy(update=CONTINUOUS._asdict())
     if isinstance(body, Rectangle):
         size = tuple(middle if a == axis else side for a, side in enumerate(body.size))
         return body.model_copy(update={"size": size})

@@ -1,6 +1,5 @@
 """Thin elements: membrane strain and curvature of a surface; Dufva and Shabana (2005), section 3."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -16,6 +15,21 @@ MembraneRule: TypeAlias = Literal["full", "lobatto", "projected"]
 CurvatureKind: TypeAlias = Literal["paper", "koiter"]
 
 AREA_POWER: dict[CurvatureKind, int] = {"paper": 2, "koiter": 0}
+
+Space: TypeAlias = list[tuple[int, int]]
+"""Polynomials spanned by products of Legendre polynomials of these degrees in x and y."""
+
+
+def degrees(p: int, q: int) -> Space:
+    """P_p(x) P_q(y)."""
+    return [(i, j) for i in range(p + 1) for j in range(q + 1)]
+
+
+PROJECTED = (degrees(1, 3), degrees(3, 1), [*degrees(1, 1), (2, 0), (0, 2)])
+"""What is kept of E_xx, E_yy and E_xy: 22 of 48 dimensions. Without the two squares in E_xy the lines across a strip of
+one element may bend to cubics for nothing, and with them a strip is three times too soft in its plane."""
+
+BILINEAR = (degrees(1, 1), degrees(1, 1), degrees(1, 1))
 
 
 @dataclass(frozen=True)
@@ -45,8 +59,7 @@ class Thin(Element):
         constant moment inside and must do none outside, or plates under constant moments bend too far.
         """
         across = "xy".index(edge[0])
-        twist = (self.shape.vectors == 1).all(axis=1).any()
-        return self.table(points)[:, 1 + across] if twist else self.nodal_values(1 + across, points)
+        return self.table(points)[:, 1 + across] if self._twist() else self.nodal_values(1 + across, points)
 
     def mass_points(self) -> tuple[FloatArray, FloatArray]:
         """Table N of shape (s, a) at quadrature points, and the mass rho h dA there, kg, shape (elements, s)."""
@@ -68,8 +81,8 @@ class Thin(Element):
         if self.membrane != "projected":
             return energy
         side = self._larger_side()
-        smooth = projection([(1, 1), (1, 1), (1, 1)])
-        Pi = smooth + np.sqrt(self._rough_share(side)) * (projection() - smooth)
+        smooth = projection(BILINEAR)
+        Pi = smooth + np.sqrt(self._rough_share(side)) * (projection(PROJECTED) - smooth)
         delta = np.minimum(1, (self.thickness / side) ** 2)
         weight = (1 - delta) * Pi.swapaxes(1, 2) @ energy.weight @ Pi + delta * energy.weight
         return StrainEnergy(energy.table, energy.measure, weight, energy.reference)
@@ -102,11 +115,11 @@ class Thin(Element):
         return np.asarray(sides.max(axis=1)[:, None, None])
 
     def _rough_share(self, side: FloatArray) -> FloatArray:
-        """Share of the energy of E_xx not linear in y and of E_yy not linear in x, shape (elements, 1, 1).
+        """Share of the energy of strains that are not bilinear, shape (elements, 1, 1).
 
-        min(1, h^2 / (|K| l^4)), K the mean Gaussian curvature of the reference, l the larger side: inextensional
-        bending of a doubly curved surface is out of the element's reach in these parts, which matters where
-        l > sqrt(R h).
+        min(1, h^2 k^4 / (12 |K|)), K the mean Gaussian curvature of the reference: inextensional bending of a doubly
+        curved surface is out of the element's reach in these parts, for waves of the wave number k and more. With l
+        the larger side, k is 12^(1/4) / l for bicubic functions and 1 / l for the incomplete quartic.
         """
         rule = square(gauss(3))
         vectors = self._reference_vectors(rule)
@@ -114,19 +127,26 @@ class Thin(Element):
         xx, yy, xy = np.moveaxis(einsum("esvi,esi->esv", vectors[..., 2:, :], n), -1, 0)
         curvature = np.abs(((xx * yy - xy**2) / einsum("esi,esi->es", n, n) ** 2) @ rule.weights)
         with np.errstate(divide="ignore"):
-            return np.asarray(np.minimum(1, self.thickness**2 / (curvature[:, None, None] * side**4)))
+            bending = self.thickness**2 / 12 * ((12 if self._twist() else 1) / side**4)
+            return np.asarray(np.minimum(1, bending / curvature[:, None, None]))
+
+    def _twist(self) -> bool:
+        """Whether r_xy is a nodal vector: the functions are bicubic."""
+        return bool((self.shape.vectors == 1).all(axis=1).any())
 
 
-def projection(degrees: Sequence[tuple[int, int]] = ((1, 3), (3, 1), (1, 1))) -> FloatArray:
+def projection(spaces: tuple[Space, Space, Space]) -> FloatArray:
     """L2 projection of the membrane strain, in the element's parameters, at the 4x4 Gauss points, shape (48, 48).
 
-    E_xx, E_yy and E_xy on polynomials of these degrees in x and y; the default has rank 20.
+    E_xx, E_yy and E_xy each on its space.
     """
     rule = square(gauss(4))
     samples = len(rule.weights)
     Pi = np.zeros((samples, 3, samples, 3))
-    for component, (p, q) in enumerate(degrees):
-        basis = np.polynomial.legendre.legvander2d(2 * rule.points[:, 0] - 1, 2 * rule.points[:, 1] - 1, [p, q])
+    x, y = 2 * rule.points.T - 1
+    products = np.polynomial.legendre.legvander2d(x, y, [3, 3]).reshape(samples, 4, 4)
+    for component, space in enumerate(spaces):
+        basis = np.stack([products[:, p, q] for p, q in space], axis=1)
         moments = basis.T * rule.weights
         Pi[:, component, :, component] = basis @ np.linalg.solve(moments @ basis, moments)
     return Pi.reshape(3 * samples, 3 * samples)

@@ -77,8 +77,8 @@ def _roof(**settings: Any) -> Variant:
         bodies={"roof": shell},
         supports=[
             Support(at="edge:x0", fix=["r", "r_y"]),
-            Support(at="edge:x1", fix=["r.x", "r_y.x", "r_x.y", "r_x.z"]),
-            Support(at="edge:y0", fix=["r.z", "r_x.z", "r_y.x", "r_y.y"]),
+            Support(at="edge:x1", symmetry="x"),
+            Support(at="edge:y0", symmetry="z"),
         ],
         loads=[Force(at="corner:x1y0", force=(0.0, -750.0, 0.0))],
         probes=[Probe(name="middle", at=(_QUARTER, 0.0), quantity="displacement")],

@@ -11,9 +11,11 @@ import os
 import sys
 import threading
 import time
+import warnings
 from queue import SimpleQueue
 from typing import Any
 
+from ancf.balance import EnergyWarning
 from ancf.errors import InputError
 from ancf.output import summarize
 from ancf.scene import Scene
@@ -49,6 +51,8 @@ def answer(scene: dict[str, Any], threads: int) -> dict[str, Any]:
 
 def main() -> None:
     """Answer until the input ends."""
+    # The summary has them.
+    warnings.simplefilter("ignore", EnergyWarning)
     # What a run prints must not be taken for an answer.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)

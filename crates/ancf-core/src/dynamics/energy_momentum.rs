@@ -65,10 +65,7 @@ impl Integrator for EnergyMomentum {
         next.q.copy_from_slice(&mean.q);
         next.a.copy_from_slice(&mean.a);
         equations.prescribe(next);
-        for (mean, start) in mean.q.iter_mut().zip(&now.q) {
-            *mean = 0.5 * (*mean + start);
-        }
-        equations.load(&mut mean);
+        equations.load_mean(&mut mean, &now.q);
         next.work = now.work + h * mean.external.iter().zip(&mean.v).map(|(force, v)| force * v).sum::<f64>();
         next.dissipated = now.dissipated + h * mean.damping;
         (next.external, next.damping) = (mean.external, mean.damping);

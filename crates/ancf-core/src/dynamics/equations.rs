@@ -23,23 +23,29 @@ impl<'a> Equations<'a> {
 
     /// The force `F`, the loads `Q_e` in it, and the power that damping takes.
     pub fn force(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64], loads: &mut [f64]) -> f64 {
+        let power = self.internal(At { q, start: None, motion: None }, v, force);
+        self.system.external_force(q, t, loads);
+        for (force, load) in force.iter_mut().zip(loads) {
+            *force -= *load;
+        }
+        power
+    }
+
+    /// The elastic force and that of damping, and the power that damping takes at the velocities `v`.
+    fn internal(&mut self, at: At<'_>, v: &[f64], force: &mut [f64]) -> f64 {
         let motion = self.system.is_damped().then_some(Motion { velocity: v, rate: 0.0, viscosity: 0.0 });
-        self.system.force(At { q, start: None, motion }, force);
+        self.system.force(At { motion, ..at }, force);
         let mut power = if motion.is_some() { self.system.strain_rates().power } else { 0.0 };
         if let Some(damping) = self.system.mass_damping() {
             for (i, product) in self.work.iter_mut().enumerate() {
                 *product = damping[i / 3] * v[i];
             }
-            let mut drag = vec![0.0; q.len()];
+            let mut drag = vec![0.0; v.len()];
             self.inertia.add_product(&self.work, &mut drag);
             for (i, drag) in drag.iter().enumerate() {
                 power += v[i] * drag;
                 force[i] += drag;
             }
-        }
-        self.system.external_force(q, t, loads);
-        for (force, load) in force.iter_mut().zip(loads) {
-            *force -= *load;
         }
         power
     }
@@ -93,6 +99,29 @@ impl<'a> Equations<'a> {
             self.add_reactions(&force, at);
         } else {
             self.system.external_force(&at.q, at.t, &mut at.external);
+        }
+    }
+
+    /// Mean loads and the mean power of damping over a step from `start` to the positions of `mean`, whose other parts are
+    /// means already; leaves the mean positions there.
+    ///
+    /// What moves a support is the mean force, which elastic forces at the mean positions are not: there a body that has
+    /// turned is strained.
+    pub fn load_mean(&mut self, mean: &mut Instantaneous, start: &[f64]) {
+        let mut force = vec![0.0; mean.q.len()];
+        let moves = self.moved().next().is_some();
+        if self.system.is_damped() || moves {
+            mean.damping = self.internal(At { q: &mean.q, start: Some(start), motion: None }, &mean.v, &mut force);
+        }
+        for (q, start) in mean.q.iter_mut().zip(start) {
+            *q = 0.5 * (*q + start);
+        }
+        self.system.external_force(&mean.q, mean.t, &mut mean.external);
+        if moves {
+            for (force, load) in force.iter_mut().zip(&mean.external) {
+                *force -= load;
+            }
+            self.add_reactions(&force, mean);
         }
     }
 

@@ -17,6 +17,8 @@ pub(super) struct Inertia {
 struct Part {
     components: Vec<usize>,
     vectors: Vec<usize>,
+    /// The coordinates, vector by vector.
+    places: Vec<usize>,
     factorization: Factorization,
     right: Vec<f64>,
 }
@@ -41,8 +43,12 @@ impl Inertia {
             } else {
                 let factorization = factorize(&matrix, &vectors)
                     .map_err(|e| Failure::from_linear(e, 0, |row| format!("nodal vector {}", vectors[row])))?;
-                parts.push(Part { components: vec![component], vectors, factorization, right: Vec::new() });
+                let (components, places, right) = (vec![component], Vec::new(), Vec::new());
+                parts.push(Part { components, vectors, places, factorization, right });
             }
+        }
+        for Part { components, vectors, places, .. } in &mut parts {
+            *places = vectors.iter().flat_map(|v| components.iter().map(move |c| 3 * v + c)).collect();
         }
         Ok(Self { matrix, parts, positions: system.positions().collect() })
     }
@@ -65,12 +71,11 @@ impl Inertia {
     /// Solves `M x = right` for the free coordinates; leaves the others of `x` as they are.
     pub fn solve(&mut self, right: &[f64], x: &mut [f64]) {
         for part in &mut self.parts {
-            let Part { components, vectors, factorization, right: packed } = part;
+            let Part { components, places, factorization, right: packed, .. } = part;
             packed.clear();
-            packed.extend(vectors.iter().flat_map(|v| components.iter().map(move |c| right[3 * v + c])));
+            packed.extend(places.iter().map(|&place| right[place]));
             factorization.solve_many(packed, components.len());
-            let places = vectors.iter().flat_map(|v| components.iter().map(move |c| 3 * v + c));
-            for (place, value) in places.zip(packed) {
+            for (&place, value) in places.iter().zip(packed) {
                 x[place] = *value;
             }
         }

@@ -25,13 +25,13 @@ pub(super) struct Tableau {
 }
 
 /// An error of the velocity goes on to move positions. It is counted with what it has done after so many steps: enough
-/// that plates of rubber and of steel keep the tolerances in `tests/control.rs`.
+/// that plates of rubber and of steel keep the tolerances in `tests/integration/motion/control.rs`.
 pub(super) const CARRIED: f64 = 4.0;
 
 /// Share of the stiff part of a difference that counts. Where stiff forces keep a body in shape while it turns, the order of
 /// velocities and of these forces falls to that of the stages. Both solutions of a pair then have the same error, and
 /// only the stiff part of their difference shows it. The share is as small as keeps the thick steel plates in
-/// `tests/control.rs` near their tolerance, because stiff parts that just die out count too.
+/// `tests/integration/motion/control.rs` near their tolerance, because stiff parts that just die out count too.
 ///
 /// # Source
 ///

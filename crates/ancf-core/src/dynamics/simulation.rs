@@ -111,6 +111,7 @@ impl<'a> Simulation<'a> {
 
     /// Integrates to the end.
     pub fn run(&mut self, observer: &mut dyn Observer) -> Result<(), Failure> {
+        self.middles.begin(self.equations.system.model(), &self.now.q);
         let end = self.steps(observer);
         observer.checkpoint(&|states| self.checkpoint().to_bytes(states), true);
         if end.is_err() && !self.options.outputs.contains(&self.now.t) {
@@ -158,6 +159,7 @@ impl<'a> Simulation<'a> {
                 observer.state(state);
             }
             std::mem::swap(&mut self.now, &mut self.next);
+            self.middles.accept();
             if observer.wants_checkpoints() {
                 self.accepted = (self.controller, Memory::of(&self.equations), self.counts());
             }
@@ -169,7 +171,9 @@ impl<'a> Simulation<'a> {
 
     fn try_step(&mut self, observer: &dyn Observer) -> Result<(), Failure> {
         self.integrator.step(&mut self.equations, &self.now, &mut self.next, &mut self.error, observer)?;
-        let finite = self.next.q.iter().chain(&self.next.v).chain(&self.next.a).all(|x| x.is_finite());
+        let Instantaneous { q, v, a, .. } = &self.next;
+        // All numbers are looked at, which compiles to less than stopping at the first.
+        let finite = [q, v, a].iter().all(|x| x.iter().fold(true, |finite, x| finite & x.is_finite()));
         if !finite {
             return Err(Failure::Overflow { t: self.next.t });
         }
@@ -178,7 +182,7 @@ impl<'a> Simulation<'a> {
         if forced || self.options.method == Method::Rigid {
             return Ok(());
         }
-        let place = self.middles.collapsed(self.equations.system.model(), &self.now.q, &self.next.q);
+        let place = self.middles.collapsed(self.equations.system.model(), &self.next.q);
         place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, t: self.next.t }))
     }
 

@@ -36,21 +36,26 @@ impl Integrator for Verlet {
         _observer: &dyn Observer,
     ) -> Result<(), Failure> {
         let h = next.t - now.t;
-        for i in 0..now.q.len() {
-            next.v[i] = now.v[i] + h * now.a[i];
-            next.q[i] = now.q[i] + h * (now.v[i] + 0.5 * h * now.a[i]);
+        let n = now.q.len();
+        // Slices of one length, so that the loops need not check it.
+        let (q, v, a) = (&now.q[..n], &now.v[..n], &now.a[..n]);
+        let (next_q, next_v) = (&mut next.q[..n], &mut next.v[..n]);
+        for i in 0..n {
+            next_v[i] = v[i] + h * a[i];
+            next_q[i] = q[i] + h * (v[i] + 0.5 * h * a[i]);
         }
         equations.prescribe(next);
         equations.accelerate(next)?;
-        for i in 0..now.q.len() {
-            next.v[i] = now.v[i] + 0.5 * h * (now.a[i] + next.a[i]);
-            error[i] = h * h / 6.0 * (next.a[i] - now.a[i]);
+        let (next_v, next_a, error) = (&mut next.v[..n], &next.a[..n], &mut error[..n]);
+        for i in 0..n {
+            next_v[i] = v[i] + 0.5 * h * (a[i] + next_a[i]);
+            error[i] = h * h / 6.0 * (next_a[i] - a[i]);
         }
         if equations.system.is_damped() {
             // Once more with the velocities just found, which makes damped motion second order too.
             equations.accelerate(next)?;
-            for i in 0..now.q.len() {
-                next.v[i] = now.v[i] + 0.5 * h * (now.a[i] + next.a[i]);
+            for i in 0..n {
+                next.v[i] = v[i] + 0.5 * h * (a[i] + next.a[i]);
             }
         }
         equations.prescribe(next);

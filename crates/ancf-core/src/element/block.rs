@@ -244,6 +244,7 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
         let material = geometric + factor * rate;
         let order = Transpose::new(simd);
         let mut constants_of = [u32::MAX; MAX_LANES];
+        let mut totals = Totals::<S, N>::new(simd);
         for elements in elements.chunks(S::F64_LANES) {
             // Lanes beyond the last element repeat it; what they give is not stored.
             let count = elements.len();
@@ -269,7 +270,7 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
             }
 
             let current = gather(simd, &block.vectors, members, at.q);
-            let [mut start, mut velocity, mut previous] = [const { None }; 3];
+            let (mut start, mut velocity, mut previous) = (None, None, None);
             if let Some(q) = at.start {
                 start = Some(gather(simd, &block.vectors, members, q));
             }
@@ -280,7 +281,7 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
             if let Some(q) = want.and_then(|want| want.previous) {
                 previous = Some(gather(simd, &block.vectors, members, q));
             }
-            let mut totals = Totals::<S, N>::new(simd);
+            totals.clear(simd);
             if let Some(combined) = &mut combined {
                 combined.empty = true;
             }

@@ -63,7 +63,7 @@ impl Constants {
                     let longer = longer_side(tables, reference);
                     // Enough to control every mode, and the whole energy where the element is as thick as it is long.
                     let share = (thickness / longer).powi(2).min(1.0);
-                    let rough = rough_share(tables, vectors, [thickness, longer]);
+                    let rough = rough_share(tables, vectors, thickness, longer / projection.followed);
                     let points: Vec<_> =
                         points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)).collect();
                     points.iter().for_each(|point| point.append(share * membrane, &mut values));
@@ -127,13 +127,13 @@ fn longer_side<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N]) ->
     (sides[0] * tables.sides[0]).max(sides[1] * tables.sides[1]) / total
 }
 
-/// The share of the energy of `E_xx` that is not linear in y, and of `E_yy` that is not linear in x:
-/// `min(1, h^2 / (|K| l^4))`, `K` the mean Gaussian curvature of the reference, `l` the larger side.
+/// The share of the energy of strains that are not bilinear: `min(1, h^2 / (12 |K| length^4))`, `K` the mean Gaussian
+/// curvature of the reference.
 ///
-/// A doubly curved surface bends without stretching in fields that the element cannot follow in these parts. It is no
-/// matter for elements shorter than the length `(h^2 / |K|)^(1/4)`, which is `sqrt(R h)` on a sphere, in which bending
-/// decays, and the energy of longer ones must not grow with their length.
-fn rough_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], [thickness, l]: [f64; 2]) -> f64 {
+/// A doubly curved surface bends without stretching in fields that the element cannot follow in these parts. What it
+/// cannot follow, a wave of the wave number `1 / length` and more, would stretch it: with an energy that is that of
+/// bending over this share, and must not be more than that of bending.
+fn rough_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thickness: f64, length: f64) -> f64 {
     let mut curvature = 0.0;
     let mut total = 0.0;
     for group in &tables.groups {
@@ -146,7 +146,7 @@ fn rough_share<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], [t
             }
         }
     }
-    (thickness.powi(2) * total / (curvature.abs() * l.powi(4))).min(1.0)
+    (thickness.powi(2) * total / (12.0 * curvature.abs() * length.powi(4))).min(1.0)
 }
 
 /// A sample in the reference state.

@@ -4,7 +4,7 @@
 
 use pulp::Simd;
 
-use crate::lanes::{Aligned, Lanes, Vector};
+use crate::lanes::{Lanes, Vector};
 use crate::strain::{Block, Curvature, Form, GreenLagrange, Measure, Metric};
 
 use super::constants::Couplings;
@@ -67,6 +67,8 @@ pub(crate) struct Totals<S: Simd, const N: usize> {
     pub energy: [Lanes<S>; 2],
     /// Power of a unit viscosity, and the energy that mean forces miss.
     pub rates: [Lanes<S>; 2],
+    /// Forces on the gradient vectors of a patch, which become those on the nodal vectors.
+    pub(super) on_gradients: [Vector<S>; MOST_GRADIENTS],
 }
 
 /// The tangent of a batch, which is added to.
@@ -93,7 +95,16 @@ impl<S: Simd, const N: usize> Totals<S, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let zero = Lanes::splat(simd, 0.0);
-        Self { energy: [zero; 2], rates: [zero; 2], force: [[zero; 3]; N] }
+        Self { energy: [zero; 2], rates: [zero; 2], force: [[zero; 3]; N], on_gradients: [[zero; 3]; MOST_GRADIENTS] }
+    }
+
+    /// Zeros again.
+    #[inline(always)]
+    pub fn clear(&mut self, simd: S) {
+        let zero = Lanes::splat(simd, 0.0);
+        self.energy.fill(zero);
+        self.rates.fill(zero);
+        self.force.fill([zero; 3]);
     }
 }
 
@@ -155,14 +166,13 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
     ) {
         let mut constants = constants.chunks_exact(point_constants(C));
         for patch in &samples.patches {
-            let mut forces = Aligned([[Lanes::splat(self.simd, 0.0); 3]; MOST_GRADIENTS]);
             for (g, constants) in constants.by_ref().take(patch.points).enumerate() {
                 let sample = self.sample::<M, D, C>(patch, g, law, constants, tangent.is_some());
                 let form = tangent.as_deref_mut().map(|tangent| Form::new(&mut tangent.forms, patch.points, g));
                 let force = self.point::<M, D, C>(&sample, law, constants, None, part, totals, form);
-                forces.0[g * D..(g + 1) * D].copy_from_slice(&force);
+                totals.on_gradients[g * D..(g + 1) * D].copy_from_slice(&force);
             }
-            patch.add_forces(&forces.0, &mut totals.force);
+            patch.add_forces(&totals.on_gradients, &mut totals.force);
             if let Some(tangent) = tangent.as_deref_mut() {
                 tangent.add_moments(&patch.moments, D * (D + 1) / 2 * patch.points);
             }

@@ -29,4 +29,5 @@ pub(crate) use kind::Variant;
 pub use kind::{Kind, NodalVector};
 pub use operations::Operations;
 pub use pairs::{tangent_place, tangent_size};
+pub(crate) use projection::SHEAR;
 pub use thin::Membrane;

@@ -6,7 +6,7 @@ use crate::lanes::{Lanes, Vector, axpy};
 use crate::strain::{Form, Metric};
 
 use super::constants::Couplings;
-use super::kernel::{Batch, MOST_GRADIENTS, Sample, Tangent, Totals, point_constants};
+use super::kernel::{Batch, Sample, Tangent, Totals, point_constants};
 use super::patch::combination;
 use super::projection::{MODES, POINTS, Projection, Row};
 use super::tables::Samples;
@@ -59,15 +59,14 @@ pub(super) fn add<S: Simd, const N: usize>(
         let strain = amplitudes(zero, projection, &at, |sample| sample.extrapolated.as_ref().unwrap_or(&sample.strain));
         geometric = at_points(zero, projection, &conjugates(zero, couplings, weights, &strain));
     }
-    let mut forces = [[zero; 3]; MOST_GRADIENTS];
     let mut tangent = tangent;
     for g in 0..POINTS {
         let form = tangent.as_deref_mut().map(|tangent| Form::new(&mut tangent.forms, POINTS, g));
         let added = Some([on_points[g], geometric[g]]);
         let force = batch.point::<Metric<S>, 2, C>(&at[g], (), constants_of[g], added, 0, totals, form);
-        forces[2 * g..2 * g + 2].copy_from_slice(&force);
+        totals.on_gradients[2 * g..2 * g + 2].copy_from_slice(&force);
     }
-    patch.add_forces(&forces, &mut totals.force);
+    patch.add_forces(&totals.on_gradients, &mut totals.force);
     if let Some(tangent) = tangent {
         tangent.add_moments(&patch.moments, 3 * POINTS);
         let mut vectors = [[zero; 3]; 2 * POINTS];

@@ -5,7 +5,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::quadrature::Rule;
+use crate::quadrature::{Rule, legendre};
 
 use super::tables::Samples;
 
@@ -13,7 +13,7 @@ use super::tables::Samples;
 pub(crate) const POINTS: usize = 16;
 
 /// Number of generalised strains.
-pub(crate) const MODES: usize = 20;
+pub(crate) const MODES: usize = 22;
 
 /// One generalised strain: the coefficient of a basis function that is orthonormal in the quadrature.
 #[derive(Clone, Debug)]
@@ -38,24 +38,37 @@ pub(crate) struct Row {
 /// so their stress enters the geometric stiffness at the points.
 #[derive(Clone, Debug)]
 pub(crate) struct Projection<const N: usize> {
+    /// Those of `E_xx` and `E_yy`, then the bilinear ones of `E_xy`, then its quadratic ones.
     pub modes: Vec<Mode>,
     /// For each vector the rows of the modes that depend on it.
     pub rows: [Vec<Row>; N],
+    /// The wave number times the side up to which the element follows a doubly curved surface that bends without
+    /// stretching.
+    pub followed: f64,
 }
+
+/// Degrees in x and in y of the modes of `E_xy`.
+///
+/// Without the last two the lines across a strip of one element may bend to cubics for nothing, and with them a strip is
+/// three times too soft in its plane.
+pub(crate) const SHEAR: [[usize; 2]; 6] = [[0, 0], [0, 1], [1, 0], [1, 1], [2, 0], [0, 2]];
+
+/// Number of modes of `E_xx` and `E_yy`.
+const NORMAL: usize = 16;
+
+/// Number of modes but for the quadratic ones of `E_xy`.
+const BILINEAR: usize = 20;
 
 impl<const N: usize> Projection<N> {
     /// The membrane projection on 4 x 4 Gauss points: `E_xx` on `P1(x) P3(y)`, `E_yy` on `P3(x) P1(y)`, `E_xy` on
-    /// `P1 P1`. 20 modes for 48 samples.
+    /// `P1 P1` and the squares of x and of y. 22 modes for 48 samples.
     ///
     /// The basis of the cubics is the one of the Gauss points themselves, so that most modes see four samples only.
-    pub fn membrane(samples: &Samples<N, 2>) -> Self {
+    pub fn membrane(samples: &Samples<N, 2>, followed: f64) -> Self {
         let points = Rule::Gauss(4).points();
         let scale = 1.0 / samples.weights.iter().sum::<f64>().sqrt();
-        // Legendre polynomials of degree 0 and 1, and the point functions, orthonormal on the unit interval.
-        let linear = |degree: usize, i: usize| match degree {
-            0 => 1.0,
-            _ => 3.0_f64.sqrt() * (2.0 * points[i].0 - 1.0),
-        };
+        // Orthonormal as the Legendre polynomials are.
+        let polynomial = |degree: usize, i: usize| legendre(degree, points[i].0);
         let at_point = |j: usize, i: usize| if i == j { 1.0 / points[j].1.sqrt() } else { 0.0 };
         let mode = |component: usize, along_x: &dyn Fn(usize) -> f64, along_y: &dyn Fn(usize) -> f64| {
             let values = (0..POINTS).map(|g| (g, samples.weights[g] * scale * along_x(g % 4) * along_y(g / 4)));
@@ -66,17 +79,13 @@ impl<const N: usize> Projection<N> {
             for degree in 0..2 {
                 for j in 0..4 {
                     modes.push(match component {
-                        0 => mode(0, &|i| linear(degree, i), &|i| at_point(j, i)),
-                        _ => mode(1, &|i| at_point(j, i), &|i| linear(degree, i)),
+                        0 => mode(0, &|i| polynomial(degree, i), &|i| at_point(j, i)),
+                        _ => mode(1, &|i| at_point(j, i), &|i| polynomial(degree, i)),
                     });
                 }
             }
         }
-        for degree in 0..2 {
-            for other in 0..2 {
-                modes.push(mode(2, &|i| linear(degree, i), &|i| linear(other, i)));
-            }
-        }
+        modes.extend(SHEAR.map(|[in_x, in_y]| mode(2, &|i| polynomial(in_x, i), &|i| polynomial(in_y, i))));
 
         // d E_xx = t_x r_x . dq, d E_yy = t_y r_y . dq, d 2 E_xy = (t_y r_x + t_x r_y) . dq
         let rows = std::array::from_fn(|a| {
@@ -93,11 +102,11 @@ impl<const N: usize> Projection<N> {
             };
             modes.iter().enumerate().map(row).filter(|row| !row.gradients.is_empty()).collect()
         });
-        Self { modes, rows }
+        Self { modes, rows, followed }
     }
 
-    /// The matrix on generalised strains that multiplies the parts of `E_xx` that are not linear in y, and those of
-    /// `E_yy` that are not linear in x, by a factor.
+    /// The matrix on generalised strains that multiplies the parts that are not bilinear by a factor: those of `E_xx`
+    /// that are not linear in y, those of `E_yy` that are not linear in x, and the squares in `E_xy`.
     pub fn reduction(factor: f64) -> DMatrix<f64> {
         let points = Rule::Gauss(4).points();
         // A strain that is linear along the four point functions, in their coefficients.
@@ -107,10 +116,13 @@ impl<const N: usize> Projection<N> {
         };
         DMatrix::from_fn(MODES, MODES, |k, l| {
             let same = if k == l { 1.0 } else { 0.0 };
-            if k.max(l) >= 16 || k / 4 != l / 4 {
-                return same;
+            if k.max(l) >= BILINEAR {
+                factor * same
+            } else if k.max(l) >= NORMAL || k / 4 != l / 4 {
+                same
+            } else {
+                factor * same + (1.0 - factor) * linear(k % 4, l % 4)
             }
-            factor * same + (1.0 - factor) * linear(k % 4, l % 4)
         })
     }
 }
@@ -120,20 +132,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reduction_keeps_what_is_linear() {
+    fn reduction_keeps_what_is_bilinear() {
         let points = Rule::Gauss(4).points();
         let coefficients = |f: fn(f64) -> f64| {
             nalgebra::DVector::from_fn(MODES, |k, _| {
                 let (x, weight) = points[k % 4];
-                if k < 16 { weight.sqrt() * f(x) } else { f64::from(k as u32) }
+                if k < NORMAL { weight.sqrt() * f(x) } else { f64::from(k as u32) }
             })
         };
         let reduction = Projection::<12>::reduction(0.3);
-        let linear = coefficients(|x| 2.0 - 5.0 * x);
+        let mut linear = coefficients(|x| 2.0 - 5.0 * x);
+        linear.rows_mut(BILINEAR, MODES - BILINEAR).fill(0.0);
         assert!((&reduction * &linear - &linear).amax() < 1e-13);
         // A Legendre polynomial, with nothing linear in it.
         let mut rough = coefficients(|x| 6.0 * x * x - 6.0 * x + 1.0);
-        rough.rows_mut(16, MODES - 16).fill(0.0);
+        rough.rows_mut(NORMAL, BILINEAR - NORMAL).fill(0.0);
         assert!((&reduction * &rough - 0.3 * &rough).amax() < 1e-13);
     }
 }

@@ -48,7 +48,7 @@ impl Membrane {
 ///
 /// Dufva and Shabana (2005), section 3 and Appendix 2.
 pub(crate) fn thin36(sides: [f64; 2], variant: Variant) -> Tables<12> {
-    tables(sides, acm(sides), variant)
+    tables(sides, acm(sides), variant, 1.0)
 }
 
 /// The thin plate with 48 degrees of freedom, whose slope is continuous too.
@@ -57,14 +57,15 @@ pub(crate) fn thin36(sides: [f64; 2], variant: Variant) -> Tables<12> {
 ///
 /// Dmitrochenko and Pogorelov (2003).
 pub(crate) fn thin48(sides: [f64; 2], variant: Variant) -> Tables<16> {
-    tables(sides, hermite(sides), variant)
+    tables(sides, hermite(sides), variant, 12.0_f64.sqrt().sqrt())
 }
 
-/// The tables of a thin element with any shape functions.
+/// The tables of a thin element with any shape functions; `followed` is for the [projection](Projection).
 fn tables<const N: usize>(
     sides: [f64; 2],
     functions: [Polynomial; N],
     Variant { membrane, curvature }: Variant,
+    followed: f64,
 ) -> Tables<N> {
     let (membrane_rule, bending_rule) = membrane.rules();
     let area = sides[0] * sides[1];
@@ -73,7 +74,7 @@ fn tables<const N: usize>(
     let stretched = samples(area, membrane_rule, |p| [[1, 0], [0, 1]].map(|d| at(d, p)));
     let stretched = match membrane {
         Membrane::Projected => {
-            let projection = Projection::membrane(&stretched);
+            let projection = Projection::membrane(&stretched, followed);
             Group::Projected(stretched, projection)
         }
         Membrane::Full | Membrane::Lobatto => Group::Membrane(stretched),

@@ -39,11 +39,12 @@ pub enum Quantity {
     Normal,
     /// Membrane strain `E_xx`, `E_yy`, `2 E_xy`: Dufva and Shabana (2005), (30), (31).
     MembraneStrain,
-    /// Change of curvature `kappa_xx`, `kappa_yy`, `2 kappa_xy`, 1/m: Dufva and Shabana (2005), (32).
+    /// Change of curvature `kappa_xx`, `kappa_yy`, `2 kappa_xy`, 1/m, positive towards the normal: Dufva and Shabana (2005), (32).
     Curvature,
     /// Membrane force per length `N = h D E`: `xx`, `yy`, `xy`, N/m.
     MembraneForce,
-    /// Bending moment per length `M = h^3/12 D kappa`: `xx`, `yy`, `xy`, N m/m.
+    /// Bending moment per length `M = h^3/12 D kappa`: `xx`, `yy`, `xy`, N m/m. It is minus the integral of `z` times the
+    /// stress, `z` along the normal: a positive one presses the top.
     Moment,
     /// Transverse shear force per length, `xz`, `yz`, N/m, from the equilibrium of moments, `-div M`: what the part
     /// beyond a cut across x or y exerts along the normal.

@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::element::Membrane;
+use crate::element::{Membrane, SHEAR};
 use crate::model::{Body, Model, Plate};
-use crate::quadrature::Rule;
+use crate::quadrature::{Rule, legendre};
 use crate::strain::SOLID_PAIRS;
 
 use super::station::Station;
@@ -38,11 +38,13 @@ impl Section {
                 let [l, w] = body.grid().element_sides();
                 let longer = (l * centre.reference[1].norm()).max(w * centre.reference[2].norm());
                 let share = (body.plate().thickness / longer).powi(2).min(1.0);
-                let [(cubic_x, linear_x), (cubic_y, linear_y)] = point.map(|at| (lagrange(rule, at), linear(rule, at)));
+                let [cubic_x, cubic_y] = point.map(|at| lagrange(rule, at));
+                let [fit_x, fit_y] = point.map(|at| least_squares(rule, at));
                 let weights = |k: usize| {
-                    let [i, j] = [k % 4, k / 4];
-                    let product = [linear_x[i] * cubic_y[j], cubic_x[i] * linear_y[j], linear_x[i] * linear_y[j]];
-                    (1.0 - share) * Vector3::from(product)
+                    let [x, y] = [fit_x[k % 4], fit_y[k / 4]];
+                    let linear = [(x[0] + x[1]) * cubic_y[k / 4], cubic_x[k % 4] * (y[0] + y[1])];
+                    let shear = SHEAR.iter().map(|&[in_x, in_y]| x[in_x] * y[in_y]).sum();
+                    (1.0 - share) * Vector3::new(linear[0], linear[1], shear)
                 };
                 let projected = rule.square().into_iter().enumerate().map(|(k, (at, _))| (at, weights(k)));
                 projected.chain([(point, Vector3::repeat(share))]).collect()
@@ -162,8 +164,8 @@ fn lagrange(rule: Rule, at: f64) -> Vec<f64> {
     (0..points.len()).map(|i| others(i).map(|j| (at - points[j]) / (points[i] - points[j])).product()).collect()
 }
 
-/// The value at a place of the linear least-squares fit to values at the points of a Gauss rule, by value.
-fn linear(rule: Rule, at: f64) -> Vec<f64> {
-    let fit = |(x, weight): (f64, f64)| weight * (1.0 + 3.0 * (2.0 * x - 1.0) * (2.0 * at - 1.0));
+/// The parts of degree 0 to 2 of the least-squares fit to values at the points of a Gauss rule, at a place, by value.
+fn least_squares(rule: Rule, at: f64) -> Vec<[f64; 3]> {
+    let fit = |(x, weight): (f64, f64)| [0, 1, 2].map(|degree| weight * legendre(degree, x) * legendre(degree, at));
     rule.points().into_iter().map(fit).collect()
 }

@@ -8,6 +8,7 @@ mod elimination;
 mod error;
 mod factor;
 mod front;
+mod frontal;
 mod gmres;
 mod ordering;
 mod panel;

@@ -16,6 +16,10 @@ const TURNING_TOLERANCE: f64 = 1e-2;
 const TURNING_PRODUCTS: usize = 8;
 const DIFFERENCE: f64 = 1e-7;
 
+/// A correction, relative to the size of the model, after which the factorisation serves the rest of a static solution.
+/// Newton's method then needs one or two more iterations, in which the tangent hardly changes.
+const NEAR: f64 = 1e-5;
+
 /// How a solution was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
@@ -243,6 +247,7 @@ impl Newton {
             extrapolate = mip;
             // Where the first factorisation is not trusted, the next one is that has shown to contract.
             let keep = reuse && (trusted || iteration > 1 && contracts) || converged && self.options.reuse;
+            let keep = keep || problem.mass == 0.0 && contracts && size <= NEAR;
             self.reuse.kept = keep.then_some(Kept { coefficients, negative });
             if converged {
                 if !fresh {

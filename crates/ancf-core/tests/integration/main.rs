@@ -10,6 +10,7 @@ mod frequencies;
 mod invariance;
 mod load_paths;
 mod loads;
+mod motion;
 mod reference_shapes;
 mod resultants;
 mod statics;

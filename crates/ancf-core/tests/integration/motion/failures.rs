@@ -1,14 +1,12 @@
 //! What cannot go on says so, and keeps what it had.
 
-mod common;
-
+use super::common::{end, options, pendulum, plate, rubber, simulate};
 use ancf_core::Material;
 use ancf_core::dynamics::{Method, Steps, Tolerances};
 use ancf_core::element::NodalVector;
 use ancf_core::model::{Course, Fix, History, Load, LoadKind, SupportMotion};
 use ancf_core::nonlinear::Failure;
 use ancf_core::report::Outcome;
-use common::{end, options, pendulum, plate, rubber, simulate};
 
 fn failure(outcome: Outcome) -> Failure {
     match outcome {
@@ -123,7 +121,7 @@ fn contradictory_motions_are_refused() {
 fn a_tolerance_below_rounding_says_so() {
     let mut options = options(Method::Hht { alpha: -0.05 }, Steps::fixed(1e-3), 0.3);
     options.newton.tolerance = 1e-15;
-    let model = common::pendulum_of(4, 0.0005, Material::new(2e11, 0.3, 7810.0).unwrap());
+    let model = super::common::pendulum_of(4, 0.0005, Material::new(2e11, 0.3, 7810.0).unwrap());
     let (_, run) = simulate(model, &options);
     let failure = failure(run.outcome);
     assert!(matches!(failure, Failure::BelowRounding { tolerance: 1e-15, .. }), "{failure}");

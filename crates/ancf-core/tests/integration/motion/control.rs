@@ -1,12 +1,10 @@
 //! Error control, and independent methods that agree.
 
-mod common;
-
+use super::common::{distance, end, hang, options, pendulum, pendulum_of, plate_of, rubber, simulate, tip};
 use ancf_core::Material;
 use ancf_core::dynamics::{Method, Steps};
 use ancf_core::element::Kind;
 use ancf_core::report::Outcome;
-use common::{distance, end, hang, options, pendulum, pendulum_of, plate_of, rubber, simulate, tip};
 
 /// Every method, refined, brings the tip of the pendulum to the same place.
 #[test]

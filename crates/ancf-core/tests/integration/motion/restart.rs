@@ -1,17 +1,15 @@
 //! A motion that is stopped anywhere, even within a step, goes on to the same states with the same effort.
 
-mod common;
-
 use std::cell::Cell;
 use std::sync::Arc;
 
+use super::common::{options, pendulum_of, rubber};
 use ancf_core::assembly::System;
 use ancf_core::dynamics::{self, Checkpoint, Method, Options, Steps, Tolerances};
 use ancf_core::model::Model;
 use ancf_core::observe::{Observer, State};
 use ancf_core::report::{Outcome, Run};
 use ancf_core::{Damping, Material};
-use common::{options, pendulum_of, rubber};
 
 /// Stops the solve when it is asked for the given time, and keeps its last checkpoint.
 struct Stopping {

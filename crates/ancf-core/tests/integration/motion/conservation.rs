@@ -1,9 +1,8 @@
 //! What a motion keeps: energy and momenta, damping and moved supports in the balance, bits after a restart.
 
-mod common;
-
 use std::sync::Arc;
 
+use super::common::{end, options, pendulum_of, plate, rubber, simulate};
 use ancf_core::assembly::System;
 use ancf_core::dynamics::{self, Checkpoint, Method, Options, Steps};
 use ancf_core::element::{Kind, NodalVector};
@@ -12,7 +11,6 @@ use ancf_core::model::{Course, Fix, Model, Plate, SupportMotion};
 use ancf_core::observe::{Observer, State};
 use ancf_core::report::{Outcome, Run};
 use ancf_core::{Damping, Material};
-use common::{end, options, pendulum_of, plate, rubber, simulate};
 
 /// A free plate that turns and strongly bends.
 fn flight(model: &Model) -> Vec<f64> {
@@ -96,7 +94,7 @@ fn damping_is_in_the_balance() {
             let missing = state.kinetic + state.strain.total() + state.dissipated - state.work;
             assert!(state.dissipated > 0.02 * state.work, "{} {} of {}", method.name(), state.dissipated, state.work);
             assert!(missing.abs() < 2e-5 * state.work, "{}: {missing:e} of {}", method.name(), state.work);
-            tips.push(common::tip(&model, &state));
+            tips.push(super::common::tip(&model, &state));
         }
         for (method, tip) in Method::ALL.iter().zip(&tips) {
             for c in 0..3 {
@@ -117,7 +115,7 @@ fn every_element_is_damped() {
         let mut model = Model::new();
         let body = model.add_body("plate", &Surface::rectangle([0.3, 0.2]).unwrap(), [2, 1], section).unwrap();
         model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
-        common::gravity(&mut model, -9.81);
+        super::common::gravity(&mut model, -9.81);
         let states = [Method::EnergyMomentum, Method::Hht { alpha: 0.0 }, Method::Esdirk, Method::Rk].map(|method| {
             // The solids' thickness stretches fast: explicit steps are limited to 1e-4 s.
             let steps = if method.is_implicit() { Steps::fixed(2e-4) } else { Steps::controlled(1e-6) };
@@ -130,7 +128,7 @@ fn every_element_is_damped() {
             let name = element.name();
             assert!(state.dissipated > 0.02 * state.work, "{name}: {} of {}", state.dissipated, state.work);
             assert!(missing.abs() < 1e-4 * state.work, "{name}: {missing:e} of {}", state.work);
-            let error = common::distance(&model, state, &states[3]);
+            let error = super::common::distance(&model, state, &states[3]);
             assert!(error < 2e-5, "{name}: {error:e}");
         }
     }
@@ -167,7 +165,7 @@ fn moved_supports_do_work() {
     for (method, state) in Method::ALL.iter().zip(&states) {
         let missing = state.kinetic + state.strain.total() - state.work;
         assert!(missing.abs() < 2e-3 * state.work, "{}: {missing:e} of {}", method.name(), state.work);
-        let error = common::distance(&model, state, &states[7]);
+        let error = super::common::distance(&model, state, &states[7]);
         assert!(error < 2e-5, "{}: {error:e}", method.name());
         for moved in model.moved() {
             let [q, v, _] = model.prescribed(moved, 0.3);
@@ -212,7 +210,7 @@ fn run(model: &Model, options: &Options, from: Option<Checkpoint>, steps: usize)
 /// Stopped anywhere, written, read and resumed: the same bits and the same counts.
 #[test]
 fn a_resumed_run_has_the_same_bits() {
-    let model = common::pendulum(2);
+    let model = super::common::pendulum(2);
     for method in Method::ALL {
         for (steps, reuse) in [(Steps::fixed(3e-3), true), (Steps::controlled(1e-3), true), (Steps::fixed(3e-3), false)]
         {
@@ -240,7 +238,7 @@ fn a_resumed_run_has_the_same_bits() {
 /// A checkpoint is refused by every other run, and the message says what differs.
 #[test]
 fn a_checkpoint_of_another_run_is_refused() {
-    let model = common::pendulum(2);
+    let model = super::common::pendulum(2);
     let options = options(Method::Hht { alpha: -0.05 }, Steps::fixed(3e-3), 0.15);
     let (stopped, _) = run(&model, &options, None, 3);
     let (checkpoint, _) = Checkpoint::from_bytes(&stopped.checkpoint).unwrap();
@@ -253,7 +251,7 @@ fn a_checkpoint_of_another_run_is_refused() {
     assert!(refused(softer, &options).contains("other bodies"));
     assert!(refused(pendulum_of(2, 0.011, rubber()), &options).contains("other bodies"));
     let mut heavier = model.clone();
-    common::gravity(&mut heavier, -1e-3);
+    super::common::gravity(&mut heavier, -1e-3);
     assert!(refused(heavier, &options).contains("other loads"));
     let mut held = model.clone();
     let body = held.find("plate").unwrap();
@@ -273,7 +271,7 @@ fn a_checkpoint_of_another_run_is_refused() {
 /// A kept factorisation leads to the same motion with far fewer factorisations.
 #[test]
 fn reuse_saves_factorisations() {
-    let model = common::pendulum(4);
+    let model = super::common::pendulum(4);
     let run = |reuse| {
         let mut options = options(Method::Hht { alpha: -0.05 }, Steps::fixed(5e-4), 0.15);
         options.newton.reuse = reuse;
@@ -282,7 +280,7 @@ fn reuse_saves_factorisations() {
         (states.pop().unwrap(), run.counts)
     };
     let ((every, counts), (kept, fewer)) = (run(false), run(true));
-    assert!(common::distance(&model, &every, &kept) < 1e-9);
+    assert!(super::common::distance(&model, &every, &kept) < 1e-9);
     println!("{counts:?}\n{fewer:?}");
     assert!(3 * fewer.factorizations < counts.factorizations, "{fewer:?} {counts:?}");
 }

@@ -1,10 +1,8 @@
-//! Observed orders of convergence against declared ones. `cargo test --test orders -- --nocapture` prints the table.
+//! Observed orders of convergence against declared ones. `cargo test --test integration orders -- --nocapture` prints the table.
 
-mod common;
-
+use super::common::{distance, end, gravity, options, pendulum, plate, rubber};
 use ancf_core::dynamics::{Method, Options, Steps};
 use ancf_core::model::Model;
-use common::{distance, end, gravity, options, pendulum, plate, rubber};
 
 /// A clamped plate of one element that bends so little, 1e-4 of its side, that it is linear.
 fn linear() -> Model {

@@ -1,6 +1,4 @@
 //! Models that several tests move.
-#![allow(dead_code, reason = "each test file uses its part")]
-
 use std::sync::Arc;
 
 use ancf_core::Material;

@@ -1,14 +1,12 @@
 //! Bodies that do not deform, against closed forms and against stiff plates.
 
-mod common;
-
 use ancf_core::Material;
 use ancf_core::dynamics::{Method, Steps};
 use ancf_core::element::NodalVector;
 use ancf_core::model::{Fix, History, Load, LoadKind, Model};
 use nalgebra::{Rotation3, Vector3};
 
-use common::{end, gravity, options, plate};
+use super::common::{end, gravity, options, plate};
 
 const SIDE: f64 = 0.3;
 
@@ -60,7 +58,7 @@ fn a_hinged_plate_falls_as_a_compound_pendulum() {
     gravity(&mut model, -9.81);
     let quarter = 1.854_074_677_301_372 / (1.5 * 9.81 / SIDE).sqrt();
     let state = end(model.clone(), &options(Method::Rigid, Steps::controlled(1e-9), quarter));
-    let tip = common::tip(&model, &state);
+    let tip = super::common::tip(&model, &state);
     assert!(tip[0].abs() < 1e-7 && (tip[2] + SIDE).abs() < 1e-7, "{tip:?}");
     assert!((state.kinetic - state.work).abs() < 1e-9 * state.work);
 }
@@ -87,9 +85,12 @@ fn it_moves_as_a_stiff_plate_does() {
         }
         let [rigid, flexible] = [(Method::Rigid, 1e-7), (Method::Rk, 1e-7)]
             .map(|(method, rtol)| end(model.clone(), &options(method, Steps::controlled(rtol), 0.3)));
-        let distance = common::distance(&model, &rigid, &flexible);
-        let moved =
-            common::tip(&model, &rigid).iter().zip([SIDE, SIDE, 0.0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let distance = super::common::distance(&model, &rigid, &flexible);
+        let moved = super::common::tip(&model, &rigid)
+            .iter()
+            .zip([SIDE, SIDE, 0.0])
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         assert!(moved > 0.02 && distance < 1e-4 * moved, "{case}: {distance:e} of {moved}");
         assert!((rigid.kinetic - rigid.work).abs() < 1e-6 * rigid.kinetic, "{case}");
     }
@@ -103,7 +104,7 @@ fn errors_shrink_with_the_fifth_power_of_the_step() {
     gravity(&mut model, -9.81);
     let at = |step: f64| end(model.clone(), &options(Method::Rigid, Steps::fixed(step), 0.8));
     let reference = at(0.8 / 640.0);
-    let errors = [20.0, 40.0].map(|n| common::distance(&model, &at(0.8 / n), &reference));
+    let errors = [20.0, 40.0].map(|n| super::common::distance(&model, &at(0.8 / n), &reference));
     let order = (errors[0] / errors[1]).log2();
     assert!((4.5..6.0).contains(&order), "{order} {errors:?}");
 }

@@ -1,0 +1,73 @@
+"""The energy balance of a motion, and what is said when it does not hold."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ancf.result import Energy
+    from ancf.run import Dynamic
+
+_GAIN = 0.05
+_LOSS = 0.2
+"""Shares of the largest energy. Pendulums whose steps are short enough stay below 0.004 and 0.015."""
+
+
+class EnergyWarning(RuntimeWarning):
+    """The energy balance of a motion is off: its steps are too long, and it is not to be trusted."""
+
+
+def balance_warnings(run: Dynamic, energy: Energy, moved: bool) -> tuple[str, ...]:
+    """Say where the energy balance of a motion with fixed steps is off.
+
+    Parameters
+    ----------
+    run : Dynamic
+        How the motion was found.
+    energy : Energy
+        Its energies.
+    moved : bool
+        Whether supports are moved.
+
+    Returns
+    -------
+    tuple of str
+        A line for energy that comes from nowhere, or if none does for energy that the integrator takes; nothing about a
+        motion whose balance holds, or whose steps error control has chosen: it answers for the motion itself.
+
+    Notes
+    -----
+    No damping can make kinetic + strain energy - work of the loads grow. So a gain is told even where the dissipation,
+    summed by the trapezoidal rule, is inaccurate, and from any earlier state on, so that losses do not hide it. States
+    between steps are interpolated, and with them the strains: they do not count.
+    """
+    if run.step is None:
+        return ()
+    steps = energy.t / run.step
+    ends = (np.abs(steps - np.round(steps)) < 1e-6) | (energy.t == run.until)
+    if not np.any(ends):
+        return ()
+    strain = energy.membrane + energy.bending
+    t, *parts = (x[ends] for x in (energy.t, energy.kinetic, strain, energy.loads, energy.dissipated))
+    kinetic, strain, loads, dissipated = parts
+    largest = float(np.max(np.abs(parts)))
+    with np.errstate(invalid="ignore"):
+        mechanical = kinetic + strain - loads
+        gain = mechanical - np.minimum.accumulate(mechanical)
+        loss = np.maximum.accumulate(mechanical + dissipated) - (mechanical + dissipated)
+    which = "the motion, or the work of the moved supports," if moved else "the motion"
+    for amount, allowed, what, wrong in (
+        (gain, _GAIN, "energy comes from nowhere: kinetic + membrane + bending - loads rises", "is wrong"),
+        (loss, _LOSS, "the integrator takes energy: all of it - loads falls", "is damped more than the model says"),
+    ):
+        beyond = np.flatnonzero(amount > allowed * largest)
+        if len(beyond):
+            most = float(amount.max())
+            return (
+                f"{what} by {most:.3g} J, {most / largest:.0%} of the largest energy, beyond {allowed:.0%} at "
+                f"t = {t[beyond[0]]:.6g} s; {which} {wrong} from there on. "
+                'Try: a smaller step, error control (rtol) or method = "energy_momentum"',
+            )
+    return ()
