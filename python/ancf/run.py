@@ -62,8 +62,8 @@ class Static(_Run):
     ----------
     load_factors : sequence of float, default (1.0,)
         Where to record a state, in the order in which they are reached; each differs from the one before, the first
-        from 0. By arc length every step is recorded: the first load factor gives the direction, and the length of the
-        longest step by what the tangent at the start does in it; the path ends at the last.
+        from 0. By arc length every step is recorded: the first load factor gives the direction and, if there are
+        more, the length of the longest step by what the tangent at the start does in it; the path ends at the last.
     path : {"load", "arc"}, default "load"
         How the path is followed. By the load factor, over stable equilibria only: where one is lost, the structure
         jumps to the next, see `Result.jumps`. Or by arc length, through limit points and turning points, stable or not;

@@ -39,6 +39,17 @@ pub enum Failure {
         /// The last correction, relative to the size of the model.
         correction: f64,
     },
+    /// A motion that looks for a stable equilibrium did not come to rest.
+    #[error(
+        "the structure does not come to rest: after {iterations} iterations a step still moves it by {moved:.1e} of its \
+         size"
+    )]
+    NotSettled {
+        /// Number of iterations.
+        iterations: usize,
+        /// The length of the last step, relative to the size of the model.
+        moved: f64,
+    },
     /// The corrections stopped shrinking at the level of rounding, above the tolerance.
     #[error("corrections stay at {floor:.1e} of the size of the model, rounding, above the tolerance {tolerance:.1e}")]
     BelowRounding {
@@ -154,7 +165,7 @@ impl Failure {
             Self::BelowRounding { .. } => "a tolerance above the correction that was reached",
             Self::Unsupported { .. } => "supports that hold these motions, or kind = \"dynamic\" for a free body",
             Self::Disconnected { .. } => "more load_factors, or a smaller first step",
-            Self::Unstable { .. } => {
+            Self::Unstable { .. } | Self::NotSettled { .. } => {
                 "the structure buckles or snaps here: a dynamic run with damping follows it; a small disturbing load shows the branch it takes"
             }
             Self::Massless { .. } => "a positive density, or kind = \"static\"",

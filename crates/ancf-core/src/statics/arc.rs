@@ -18,6 +18,9 @@ const TURN: [f64; 2] = [0.5, 0.2];
 const MISMATCH: f64 = 0.05;
 /// A limit point this close to the end of a step, relative to its length, is that end.
 const LIMIT: f64 = 0.05;
+/// A step in which the number of negative pivots changes though the load factor goes on becomes shorter by this share, until
+/// it changes the load factor by less than so much of it: a bifurcation is located as well as this.
+const BIFURCATION: [f64; 2] = [0.25, 1e-2];
 
 /// Follows the path until it reaches the last load factor.
 ///
@@ -30,6 +33,9 @@ pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn 
     let (first, target) = (factors[0] - path.at.load.t, factors[factors.len() - 1]);
     let step = options.first_step.unwrap_or(f64::INFINITY);
     let mut walk = Walk::new(path, [first, step, options.min_step]);
+    if factors.len() > 1 {
+        walk = walk.in_even_steps();
+    }
     while path.at.load.t != target && path.steps < options.max_steps {
         walk.step(path, target, observer)?;
         path.steps += 1;
@@ -51,27 +57,27 @@ pub(super) struct Walk {
 
 impl Walk {
     /// From the last point of the path, whose tangent is factorised, in the direction in which the load factor changes
-    /// by `longest`; no step is longer than the tangent is for that change, the first and the shortest are that for
-    /// `first` and `shortest`.
-    pub fn new(path: &mut Path<'_>, [longest, first, shortest]: [f64; 3]) -> Self {
+    /// by `most`; along the tangent no step changes it by more, the first one changes it by `first` and the shortest by
+    /// `shortest`. Where a path turns away from its first direction it goes much farther for the same load.
+    pub fn new(path: &mut Path<'_>, [most, first, shortest]: [f64; 3]) -> Self {
         let metric = Metric::new(path);
         let rate = path.rate(&path.at.q.clone(), path.at.load.t);
         let size = metric.length(&rate);
-        let tangent = Tangent::new(rate, longest.signum() / size);
-        let most = longest.abs();
-        let [longest, shortest] = [most, shortest].map(|change| size * change);
-        Self { metric, tangent, length: longest.min(size * first), shortest, longest, most }
+        let tangent = Tangent::new(rate, most.signum() / size);
+        let most = most.abs();
+        Self {
+            metric,
+            tangent,
+            length: size * first.min(most),
+            shortest: size * shortest,
+            longest: f64::INFINITY,
+            most,
+        }
     }
 
-    /// The same without a longest step, but for the change of the load factor along the tangent: where a path turns away
-    /// from its first direction it may have to go much farther for the same load.
-    pub fn bounded_by_load(self) -> Self {
-        Self { longest: f64::INFINITY, ..self }
-    }
-
-    /// Makes the next step shorter.
-    pub fn shorten(&mut self, share: f64) {
-        self.length *= share;
+    /// The same with steps no longer than the first tangent is for the largest change of the load factor.
+    pub fn in_even_steps(self) -> Self {
+        Self { longest: self.most / self.tangent.t.abs(), ..self }
     }
 
     /// Makes a step of the path; it ends where a limit point or the target is met.
@@ -86,6 +92,10 @@ impl Walk {
                     return Ok(());
                 }
                 Ok(Step::Shortened(by)) => share *= by,
+                Ok(Step::Lost) => {
+                    self.length *= BIFURCATION[0] * share;
+                    share = 1.0;
+                }
                 Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
                 Err(failure) => {
                     path.rejected.count(&failure);
@@ -126,8 +136,15 @@ impl Walk {
         if turn > TURN[0] || mismatch.abs() > MISMATCH {
             return Err(Failure::Disconnected { progress: turn, mismatch });
         }
-        if let Some(share) = way.limit().filter(|share| (LIMIT..1.0 - LIMIT).contains(share)) {
-            return Ok(Step::Shortened(share));
+        match way.limit() {
+            Some(share) if (LIMIT..1.0 - LIMIT).contains(&share) => return Ok(Step::Shortened(share)),
+            None if length > self.shortest
+                && report.negative_pivots != way.from.negative_pivots
+                && (way.t - way.from.load.t).abs() > BIFURCATION[1] * way.t.abs() =>
+            {
+                return Ok(Step::Lost);
+            }
+            _ => {}
         }
         let mut last = None;
         if (way.t - target) * (path.at.load.t - target) < 0.0 {
@@ -157,6 +174,8 @@ enum Step {
     },
     /// There is a limit point at this share of the step, which should end there.
     Shortened(f64),
+    /// It passes over a bifurcation.
+    Lost,
 }
 
 /// Changes per unit of length along the path.

@@ -9,20 +9,19 @@ use crate::observe::Observer;
 use super::Options;
 use super::arc::{Metric, Walk};
 use super::motion::{Start, settle};
-use super::path::{Path, Point, difference};
+use super::path::{Load, Path, difference, product};
 
-/// Steps by arc length in which stability must be lost or the load must get on.
+/// Steps by arc length in which stability is lost or the load gets on far enough.
 const MOST_STEPS: usize = 50;
 /// Load, relative to the first step, after which it has got on; the same where the step that failed, four times as long, has
 /// seen an unstable state.
 const PASSED: f64 = 16.0;
 const PASSED_UNSTABLE: f64 = 4.0;
-/// Jumps that may come to nothing: close to a bifurcation the branches are close together and the motion almost at rest.
-const MOST_JUMPS: usize = 3;
-/// The step after a jump that came to nothing, relative to the one before.
-const FURTHER: f64 = 0.1;
+/// How far beyond the load at which stability is lost the structure moves, relative to the first step: there the equilibrium
+/// that it leaves is no longer, and nor are those that are as close to their limit.
+const BEYOND: f64 = 0.01;
 /// Iterations of a motion.
-const MOST_MOTION: usize = 1500;
+const MOST_MOTION: usize = 5000;
 /// Disturbance along the mode that has lost its stiffness, relative to the size of the model.
 const DISTURBANCE: f64 = 1e-3;
 
@@ -54,51 +53,49 @@ fn lead_on(
     path.linearize()?;
     let start = path.at.load.t;
     let direction = (target - start).signum();
+    let onwards = |from: f64, change: f64| from + direction * change.min((target - from).abs());
     let longest = if unstable { length } else { PASSED * length };
     let passed = if unstable { PASSED_UNSTABLE } else { PASSED } * length;
-    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]).bounded_by_load();
+    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]);
     let (mut stable, mut farthest) = (path.at.q.clone(), start);
-    let mut stuck = None;
-    let mut jumps = 0;
     for _ in 0..MOST_STEPS {
-        walk.step(path, target, observer)?;
-        path.steps += 1;
-        if (path.at.load.t - farthest) * direction > 0.0 {
+        match walk.step(path, target, observer) {
+            Ok(()) => path.steps += 1,
+            Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
+            // The path leads nowhere, but a motion does.
+            Err(_) => {
+                path.linearize()?;
+                let (q, t) = (path.at.q.clone(), onwards(farthest, length));
+                let change = path.change(&q, Load { t, held: 0.0 });
+                let mut shape = vec![0.0; q.len()];
+                path.system.solve(&change, &mut shape);
+                let stiffness = product(&change, &shape);
+                return jump(path, Start { t, q, shape: &shape, stiffness, stable: false }, observer);
+            }
+        }
+        let back = (farthest - path.at.load.t) * direction;
+        if back < 0.0 {
             farthest = path.at.load.t;
         }
         // A stable equilibrium at a smaller load lies beyond an unstable stretch that the step has passed over.
-        if path.at.negative_pivots > 0 || (farthest - path.at.load.t) * direction > 0.0 {
-            match jump(path, &stable, farthest, observer) {
-                Err(failure @ Failure::Unstable { .. }) if jumps < MOST_JUMPS => stuck = Some(failure),
-                result => return result,
-            }
-            jumps += 1;
-            walk.shorten(FURTHER);
-            continue;
-        }
-        if let Some(failure) = stuck {
-            return Err(failure);
+        if path.at.negative_pivots > 0 || back > 0.0 {
+            let q = disturbed(path, &difference(&path.at.q, &stable));
+            let shape = difference(&path.at.q, path.system.model().reference());
+            let (t, stiffness) = (onwards(farthest, BEYOND * length), 2.0 * path.at.energy);
+            return jump(path, Start { t, q, shape: &shape, stiffness, stable: false }, observer);
         }
         if path.at.load.t == target || (farthest - start) * direction > passed {
-            return Ok(());
+            break;
         }
         stable.copy_from_slice(&path.at.q);
     }
-    Err(Failure::NotConverged { iterations: MOST_STEPS, correction: f64::NAN })
+    Ok(())
 }
 
-/// Moves from the last point, which is not stable, to a stable one at load factor `t`, farther from `stable`.
-fn jump(path: &mut Path<'_>, stable: &[f64], t: f64, observer: &mut dyn Observer) -> Result<(), Failure> {
-    // At least one, where the step has passed over the unstable stretch.
-    let negative = path.at.negative_pivots.max(1);
-    let metric = Metric::new(path);
-    let away = difference(&path.at.q, stable);
-    let q = disturbed(path, &metric, &away);
-    let beyond = |_: &Path<'_>, point: &Point| metric.length(&difference(&point.q, stable)) > metric.length(&away);
-    let displacement = difference(&path.at.q, path.system.model().reference());
-    let start = Start { t, q, shape: &displacement, stiffness: 2.0 * path.at.energy, stable: false };
-    let found = settle(path, start, MOST_MOTION, beyond, observer)?;
-    let end = found.ok_or(Failure::Unstable { negative })?;
+/// Moves from a state close to the last point to a stable equilibrium.
+fn jump(path: &mut Path<'_>, start: Start<'_>, observer: &mut dyn Observer) -> Result<(), Failure> {
+    let t = start.t;
+    let end = settle(path, start, MOST_MOTION, observer)?;
     let straight = difference(&end.q, &path.at.q);
     path.work += path.system.work(t, [&path.at.q, &end.q], [&straight, &straight]);
     path.at = end;
@@ -108,7 +105,8 @@ fn jump(path: &mut Path<'_>, stable: &[f64], t: f64, observer: &mut dyn Observer
 
 /// The coordinates of the last point, displaced along the softest mode of its tangent, which is factorised: forwards, if
 /// the mode has a part along the last step.
-fn disturbed(path: &mut Path<'_>, metric: &Metric, along: &[f64]) -> Vec<f64> {
+fn disturbed(path: &mut Path<'_>, along: &[f64]) -> Vec<f64> {
+    let metric = Metric::new(path);
     let n = along.len();
     // Uniform numbers by a linear congruential generator with Knuth's MMIX constants: a start with every mode in it.
     let mut seed = 1_u64;

@@ -190,8 +190,7 @@ fn slide(
 ) -> Result<(), Failure> {
     let stiffness = product(change, predicted);
     let start = Start { t: to.t, q: path.at.q.clone(), shape: predicted, stiffness, stable: true };
-    let found = settle(path, start, MOST_SLIDE, |_, _| true, observer)?;
-    let point = found.ok_or(Failure::NotConverged { iterations: 0, correction: f64::NAN })?;
+    let point = settle(path, start, MOST_SLIDE, observer)?;
     accept(path, point, change, predicted, [SLID, 0.0])
 }
 

@@ -49,18 +49,20 @@ pub(super) struct Start<'a> {
     pub stable: bool,
 }
 
-/// Moves until a stable equilibrium that is `wanted` is found, in about so many iterations; none: there is no such one.
+/// Moves until it comes to rest in a stable equilibrium, in about so many iterations.
+///
+/// A step minimises the potential energy with a penalty on its length. The longest that goes down is sought, and one that is
+/// short enough always does: from where the stiffness is not positive the motion leads away.
 ///
 /// # Errors
 ///
-/// The motion comes where it may not: the stiffness is not positive.
+/// The motion comes where it may not, the stiffness is not positive; or it does not come to rest.
 pub(super) fn settle(
     path: &mut Path<'_>,
     Start { t, mut q, shape, stiffness, stable }: Start<'_>,
     most: usize,
-    wanted: impl Fn(&Path<'_>, &Point) -> bool,
     observer: &dyn Observer,
-) -> Result<Option<Point>, Failure> {
+) -> Result<Point, Failure> {
     let model = path.system.model().with_least_density(WEIGHTLESS);
     let mut damped = System::new(Arc::new(model)).map_err(|e| Failure::from_linear(e, 0, |_| String::new()))?;
     let options = NewtonOptions { tolerance: TOLERANCE, max_iterations: ITERATIONS, ..NewtonOptions::default() };
@@ -76,31 +78,38 @@ pub(super) fn settle(
     let mut mass = scale * (newton.distance(&vec![0.0; q.len()], shape) / LONGEST).max(1.0);
     let mut longer = LONGER[0];
     let mut last = f64::INFINITY;
-    let mut end = Ok(None);
+    let (mut end, mut cause) = (None, None);
     while newton.iterations() < most {
         let mut next = q.clone();
         let problem = Problem { t, mass, stiffness: 1.0, origin: &q, ..Problem::default() };
         let report = match newton.solve(&mut damped, &problem, &mut next, None, observer) {
             Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
-            result => result.ok(),
+            Err(failure) => {
+                cause = Some(failure);
+                None
+            }
+            Ok(report) => Some(report),
         };
         let (moved, step) = (newton.distance(&q, &next), difference(&next, &q));
-        let valid = report.filter(|report| {
-            let descent = energy + damped.work(t, [&q, &next], [&step, &step]) - report.energy;
-            report.negative_pivots == 0 && moved <= LONGEST && descent >= -ROUNDING * energy
+        let valid = report.filter(|report| report.negative_pivots == 0 && moved <= LONGEST);
+        let lower = valid.and_then(|report| {
+            // The energy of the report is not exact enough for small steps.
+            let there = damped.internal_force(&next, &mut force).total();
+            let descent = energy + damped.work(t, [&q, &next], [&step, &step]) - there;
+            (descent >= -ROUNDING * energy).then_some((report, there))
         });
-        let Some(report) = valid else {
+        let Some((report, there)) = lower else {
             mass *= SHORTER;
             longer = LONGER[1];
-            if mass > HEAVIEST * scale {
+            if mass > HEAVIEST * scale || !mass.is_finite() {
                 break;
             }
             continue;
         };
-        (q, energy) = (next, report.energy);
+        (q, energy) = (next, there);
         let negative = if stable { negative_pivots(path, t, &q)? } else { 0 };
         if negative > 0 {
-            end = Err(Failure::Unstable { negative });
+            end = Some(Err(Failure::Unstable { negative }));
             break;
         }
         let quick = report.iterations <= QUICK;
@@ -110,9 +119,8 @@ pub(super) fn settle(
         let calm = mass < LIGHTEST * scale || quick && moved < CALMER * last;
         last = moved;
         if moved < AT_REST && calm {
-            let found = rest(path, t, &q, observer)?.filter(|point| wanted(path, point));
-            if found.is_some() {
-                end = Ok(found);
+            end = rest(path, t, &q, observer)?.map(Ok);
+            if end.is_some() {
                 break;
             }
         }
@@ -120,7 +128,11 @@ pub(super) fn settle(
     path.forces += damped.forces();
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
-    end
+    end.unwrap_or_else(|| match cause {
+        // No step has succeeded.
+        Some(failure) if last == f64::INFINITY => Err(failure),
+        _ => Err(Failure::NotSettled { iterations: newton.iterations(), moved: last }),
+    })
 }
 
 /// Negative pivots of the stiffness.

@@ -1,0 +1,142 @@
+"""Stability lost and found again along load paths: columns past Euler's load, shells that snap many times."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipk
+
+import ancf
+
+LENGTH = 1.0
+
+
+def column(ratio: float, lean: float) -> ancf.Model:
+    """Clamped at its foot; pressed by so many times Euler's load, pushed aside by this share of it."""
+    width, thickness, young = 0.1, 0.01, 2.1e11
+    critical = np.pi**2 / 4 * young * width * thickness**3 / 12 / LENGTH**2
+    strip = ancf.Rectangle(
+        size=(LENGTH, width), divisions=(16, 1), thickness=thickness, material=ancf.Material(E=young, nu=0.0)
+    )
+    return ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(-ratio * critical / width, 0.0, lean * critical / width))],
+        probes=[ancf.Probe(name="tip", at=(LENGTH, width / 2), quantity="displacement")],
+    )
+
+
+def assert_elastica(result: ancf.Result, ratio: float) -> None:
+    """Deflection 2 k / K(k) with K(k) = pi / 2 sqrt(P / P_c)."""
+    k = brentq(lambda k: ellipk(k**2) - np.pi / 2 * np.sqrt(ratio), 0.01, 0.999999)
+    deflection = abs(result.probes["tip"].value[-1, 2])
+    np.testing.assert_allclose(deflection, 2 * k / ellipk(k**2) * LENGTH, rtol=2e-3)
+
+
+@pytest.mark.parametrize("ratio", [1.5, 4.0])
+def test_a_leaning_column_is_followed_past_its_critical_load(ratio: float) -> None:
+    """From its first, stiff direction into bending."""
+    result = ancf.solve_static(column(ratio, 1e-3))
+    assert_elastica(result, ratio)
+    assert result.counts["steps"] < 20
+    assert len(result.jumps) == 0
+
+
+@pytest.mark.parametrize("ratio", [1.02, 1.5, 3.0])
+def test_a_perfect_column_buckles_at_eulers_load(ratio: float) -> None:
+    """Told to 1 %, however long the step that goes over it."""
+    result = ancf.solve_static(column(ratio, 0.0))
+    np.testing.assert_allclose(result.jumps * ratio, [1.0], rtol=0.01)
+    assert_elastica(result, ratio)
+
+
+def test_arc_length_bends_with_a_column_that_is_all_but_perfect() -> None:
+    """A step that ends straight, above Euler's load, would be on another branch, which is not stable."""
+    result = ancf.solve_static(column(3.0, 1e-6), path="arc")
+    np.testing.assert_array_equal(result.negative_pivots, 0)
+    assert_elastica(result, 3.0)
+    assert result.counts["steps"] < 40
+
+
+def panel() -> ancf.Model:
+    """Cylindrical, hinged at its straight edges, under a force in its middle."""
+    shape = ancf.Cylinder(
+        radius=5.0,
+        angle=(-0.3, 0.3),
+        length=(0.0, 1.0),
+        divisions=(9, 9),
+        thickness=0.0054,
+        material=ancf.Material(E=3e9, nu=0.3),
+    )
+    return ancf.Model(
+        bodies={"panel": shape},
+        supports=[ancf.Support(at="edge:x0", fix=["r"]), ancf.Support(at="edge:x1", fix=["r"])],
+        loads=[ancf.Force(at=(0.0, 0.5), force=(-2135.0, 0.0, 0.0))],
+        probes=[ancf.Probe(name="middle", at=(0.0, 0.5), quantity="displacement")],
+    )
+
+
+@pytest.mark.parametrize("load", [0.033, 0.05, 0.2])
+def test_a_panel_snaps_at_the_same_load_in_any_steps(load: float) -> None:
+    """At 0.0316 in a hundred steps to 0.05. The stretch that is not stable is short: a step may pass over it."""
+    result = ancf.solve_static(panel(), load_factors=[load])
+    np.testing.assert_allclose(result.jumps, [0.0316], rtol=0.012)
+
+
+def bulge(across: float, divisions: int, thickness: float, sides: list[str], force: float) -> ancf.Model:
+    """A paraboloid over a square, pinned at some sides, under a force in its middle."""
+    shape = ancf.Surface(
+        position=lambda x, y: (x, y, 0.05 * (9 - x * x) + across * (9 - y * y)),
+        domain=((-3, 3), (-3, 3)),
+        divisions=(divisions, divisions),
+        thickness=thickness,
+        material=ancf.Material(E=2e7, nu=0.3),
+    )
+    return ancf.Model(
+        bodies={"bulge": shape},
+        supports=[ancf.Support(at=f"edge:{side}", fix=["r"]) for side in sides],
+        loads=[ancf.Force(at=(0, 0), force=(0, 0, -force))],
+    )
+
+
+def cap(force: float) -> ancf.Model:
+    """A part of a sphere, pinned all around."""
+    shape = ancf.Sphere(
+        radius=10.0,
+        longitude=(-0.5, 0.5),
+        latitude=(-0.5, 0.5),
+        divisions=(4, 4),
+        thickness=0.0333,
+        material=ancf.Material(E=2e7, nu=0.3),
+    )
+    return ancf.Model(
+        bodies={"cap": shape},
+        supports=[ancf.Support(at=f"edge:{side}", fix=["r"]) for side in ("x0", "x1", "y0", "y1")],
+        loads=[ancf.Force(at=(0, 0), force=(-force, 0, 0))],
+    )
+
+
+ALL = ["x0", "x1", "y0", "y1"]
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        lambda: bulge(-0.05, 5, 0.02384, ALL[:2], 855.5),
+        lambda: bulge(-0.05, 5, 0.01275, ALL[:2], 850.5),
+        lambda: bulge(-0.05, 4, 0.09365, ALL[:2], 75103.4),
+        lambda: bulge(0.05, 6, 0.01811, ALL, 451.2),
+        lambda: cap(20000.0),
+        lambda: cap(117467.0),
+    ],
+)
+def test_shells_jump_on_to_the_whole_load(model: Callable[[], ancf.Model]) -> None:
+    """Pressed far beyond their first snap: every motion comes to rest in a stable state and sets energy free."""
+    result = ancf.solve_static(model())
+    assert result.status == "ok"
+    assert len(result.jumps) >= 1
+    np.testing.assert_array_equal(result.negative_pivots, 0)
+    energy = result.energy
+    strain = energy.membrane + energy.bending
+    assert energy.loads[-1] - strain[-1] > 0.01 * strain[-1]
