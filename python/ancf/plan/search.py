@@ -14,7 +14,7 @@ from ancf.plan.ladder import Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.timing import Timing
 
-_MARGIN = 0.95
+_MARGIN = 0.85
 """Part of the tolerance that estimates may promise: they are no bounds."""
 _LEFT = 0.5
 """Part of what tighter steps change that is left when it is taken out: a third at the second order."""

@@ -157,7 +157,7 @@ def projection(spaces: tuple[Space, Space, Space]) -> FloatArray:
     x, y = 2 * rule.points.T - 1
     products = np.polynomial.legendre.legvander2d(x, y, [3, 3]).reshape(samples, 4, 4)
     for component, space in enumerate(spaces):
-        basis = np.stack([products[:, p, q] for p, q in space], axis=1)
+        basis = np.array([products[:, p, q] for p, q in space]).reshape(len(space), samples).T
         moments = basis.T * rule.weights
         Pi[:, component, :, component] = basis @ np.linalg.solve(moments @ basis, moments)
     return Pi.reshape(3 * samples, 3 * samples)
