@@ -74,6 +74,31 @@ def test_a_strip_of_one_element_across_bends_in_its_plane_as_a_beam(
     assert tip == pytest.approx(bending + shear, rel=tolerance)
 
 
+def test_a_curved_strip_of_one_element_across_twists_as_a_beam() -> None:
+    """A quarter of a ring, clamped, bent out of its plane by a force on its end: P R^3 ((3 pi / 4 - 2) / (G J) + pi / (4 E I))."""
+    R, b, h, E = 1.0, 0.02, 0.0002, 2e11
+    twisting, bending = E / 2 * b * h**3 / 3 * (1 - 0.63 * h / b), E * h * b**3 / 12
+    P = 1e-4 * twisting
+    quarter = np.pi / 2
+    strip = ancf.Cylinder(
+        radius=R,
+        angle=(0.0, quarter),
+        length=(0.0, b),
+        divisions=(4, 1),
+        thickness=h,
+        material=ancf.Material(E=E, nu=0.0),
+    )
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, P / b))],
+        probes=[ancf.Probe(name="tip", at=(quarter, b / 2), quantity="displacement")],
+    )
+    tip = ancf.solve_static(model).probes["tip"].value[-1, 2]
+    beam = P * R**3 * ((1.5 * quarter - 2) / twisting + quarter / (2 * bending))
+    assert tip == pytest.approx(beam, rel=0.15)  # the coarse mesh; half of the beam where x^2 in E_xy counts fully
+
+
 def pendulum(divisions: tuple[int, int], acceleration: float = -9.81) -> ancf.Model:
     """Rubber, hung at a corner; Dufva and Shabana (2005)."""
     plate = ancf.Rectangle(size=(0.3, 0.3), divisions=divisions, thickness=0.01, material=RUBBER, membrane="full")
