@@ -75,7 +75,7 @@ def test_a_strip_of_one_element_across_bends_in_its_plane_as_a_beam(
 
 
 def test_a_curved_strip_of_one_element_across_twists_as_a_beam() -> None:
-    """A quarter of a ring, clamped, bent out of its plane by a force on its end: P R^3 ((3 pi / 4 - 2) / (G J) + pi / (4 E I))."""
+    """A quarter of a ring, clamped, and a force across its plane: P R^3 ((3 pi / 4 - 2) / (G J) + pi / (4 E I))."""
     R, b, h, E = 1.0, 0.02, 0.0002, 2e11
     twisting, bending = E / 2 * b * h**3 / 3 * (1 - 0.63 * h / b), E * h * b**3 / 12
     P = 1e-4 * twisting

