@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+import warnings
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ancf.balance import EnergyWarning
 from ancf.errors import InputError, Interrupted
 from ancf.plan.cost import Costs
 from ancf.plan.ladder import Choice, apply
@@ -161,7 +163,9 @@ class Pilots:
             scene = apply(self.scene, choice)
             start = clock()
             assert not isinstance(scene.run, Modes)
-            result = solve(scene.model, scene.run, threads=threads, progress=watch, throw=False)
+            # What is tried may be wrong; what is chosen tells its warnings in its result.
+            with warnings.catch_warnings(action="ignore", category=EnergyWarning):
+                result = solve(scene.model, scene.run, threads=threads, progress=watch, throw=False)
         except _TooSlowError:
             return failed(_SLOW)
         except InputError as error:
