@@ -63,6 +63,20 @@ def test_explicit_steps_above_the_limit_are_refused() -> None:
         ancf.simulate(pendulum(), until=0.1, step=0.05, method="verlet", force=True, throw=False)
 
 
+def test_a_body_at_rest_is_not_said_to_gain_energy() -> None:
+    """Its energies are rounding. EnergyWarning would be an error here."""
+    held = [ancf.Support(at="edge:x0", clamp=True)]
+    result = ancf.simulate(ancf.Model(bodies=pendulum().bodies, supports=held), until=0.01, step=1e-3)
+    assert result.energy.kinetic[-1] < 1e-20
+    assert result.warnings == ()
+
+
+def test_a_checkpoint_that_cannot_be_written_is_refused_first(tmp_path: Path) -> None:
+    for path in (tmp_path, tmp_path / "missing" / "checkpoint"):
+        with pytest.raises(ancf.InputError, match=str(path)):
+            ancf.simulate(pendulum(), until=0.1, step=0.05, checkpoint=path)
+
+
 def test_damping_slows_a_free_body_exponentially() -> None:
     rubber = ancf.Material(E=1e5, nu=0.3, density=7810.0, mass_damping=2.0)
     plate = ancf.Rectangle(size=(0.3, 0.3), divisions=(1, 1), thickness=0.01, material=rubber)

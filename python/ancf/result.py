@@ -24,6 +24,10 @@ FloatArray = NDArray[np.float64]
 Status = Literal["ok", "failed", "interrupted"]
 
 
+_RESTS = 1e-9
+"""Changes of nodal coordinates, relative to their range, that are none: strains of them square to rounding."""
+
+
 @dataclass(frozen=True)
 class Record:
     """What a probe recorded.
@@ -158,9 +162,13 @@ class Result:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is doubtful about a motion: where and how far its energy balance is off, and what to try."""
-        if not isinstance(self.run, Dynamic):
+        if not isinstance(self.run, Dynamic) or self._rests():
             return ()
         return balance_warnings(self.run, self.energy, any(support.moves for support in self.model.supports))
+
+    def _rests(self) -> bool:
+        """Whether all nodal coordinates stay where they are, but for rounding: energies are rounding, too."""
+        return bool(np.ptp(self.q, axis=0).max() < _RESTS * np.ptp(self.q[0])) if len(self.q) else True
 
     def evaluate(self, body: str, points: ArrayLike, quantity: Quantity) -> FloatArray:
         """Return a quantity at material points in every state.

@@ -283,6 +283,7 @@ class Dynamic(_Run):
         resume: str | os.PathLike[str] | None = None,
     ) -> _core.Run:
         """Run the compiled model."""
+        _check_folder(checkpoint)
         with _checkpoint(resume):
             return _core.simulate(
                 core,
@@ -303,6 +304,18 @@ class Dynamic(_Run):
                 threads=threads,
                 progress=progress,
             )
+
+
+def _check_folder(checkpoint: str | os.PathLike[str] | None) -> None:
+    """Refuse a checkpoint that could not be written, before anything is computed."""
+    if checkpoint is None:
+        return
+    name = os.fspath(checkpoint)
+    folder = os.path.dirname(name) or "."
+    if os.path.isdir(name):
+        raise InputError(Mistake((name,), "is a folder; a checkpoint is a file"))
+    if not os.path.isdir(folder) or not os.access(folder, os.W_OK):
+        raise InputError(Mistake((name,), f"cannot be written: {folder} must be a folder that is writable"))
 
 
 @contextmanager

@@ -41,8 +41,8 @@ pub enum Failure {
     },
     /// A motion that looks for a stable equilibrium did not come to rest.
     #[error(
-        "the structure does not come to rest: after {iterations} iterations a step still moves it by {moved:.1e} of its \
-         size"
+        "the structure does not come to rest in a stable equilibrium: {iterations} iterations, the last step of which \
+         moved it by {moved:.1e} of its size"
     )]
     NotSettled {
         /// Number of iterations.
@@ -165,8 +165,11 @@ impl Failure {
             Self::BelowRounding { .. } => "a tolerance above the correction that was reached",
             Self::Unsupported { .. } => "supports that hold these motions, or kind = \"dynamic\" for a free body",
             Self::Disconnected { .. } => "more load_factors, or a smaller first step",
-            Self::Unstable { .. } | Self::NotSettled { .. } => {
+            Self::Unstable { .. } => {
                 "the structure buckles or snaps here: a dynamic run with damping follows it; a small disturbing load shows the branch it takes"
+            }
+            Self::NotSettled { .. } => {
+                "path = \"arc\", or a dynamic run with damping: what the structure goes to here is far, or nowhere (loads that follow the surface may have no stable equilibrium)"
             }
             Self::Massless { .. } => "a positive density, or kind = \"static\"",
             Self::ModesNotFound { .. } => {

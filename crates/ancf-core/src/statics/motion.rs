@@ -30,6 +30,8 @@ const LONGEST: f64 = 0.3;
 /// has almost come to rest.
 const AT_REST: f64 = 0.05;
 const CALMER: f64 = 0.5;
+/// A step that moves less, relative to the size of the model, changes nothing but rounding: the motion is stuck.
+const STUCK: f64 = 1e-12;
 /// Accuracy of a step.
 const TOLERANCE: f64 = 1e-3;
 /// Iterations after which a step has failed.
@@ -118,9 +120,10 @@ pub(super) fn settle(
         }
         let calm = mass < LIGHTEST * scale || quick && moved < CALMER * last;
         last = moved;
-        if moved < AT_REST && calm {
+        let stuck = moved < STUCK;
+        if moved < AT_REST && calm || stuck {
             end = rest(path, t, &q, observer)?.map(Ok);
-            if end.is_some() {
+            if end.is_some() || stuck {
                 break;
             }
         }
