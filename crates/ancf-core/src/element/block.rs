@@ -145,15 +145,17 @@ fn couplings<const N: usize>(tables: &Tables<N>, classes: &[Constants]) -> Coupl
         if let Group::Projected(samples, projection) = group {
             start += samples.tables.len() * point_constants(COMPONENTS);
             let modes = projection.modes.len();
-            let coupled = |position: usize| {
-                classes.iter().any(|class| {
-                    let largest = (0..modes).map(|k| class.values[start + packed(k, k)]).fold(0.0, f64::max);
-                    class.values[start + position].abs() > 1e-15 * largest
-                })
-            };
+            let mut coupled = vec![false; modes * (modes + 1) / 2];
+            for class in classes {
+                let matrix = &class.values[start..start + coupled.len()];
+                let largest = (0..modes).map(|k| matrix[packed(k, k)]).fold(0.0, f64::max);
+                for (coupled, value) in coupled.iter_mut().zip(matrix) {
+                    *coupled |= value.abs() > 1e-15 * largest;
+                }
+            }
             let position = |k: usize, l: usize| packed(k.min(l), k.max(l));
             return (0..modes)
-                .map(|k| (0..modes).map(|l| (l, position(k, l))).filter(|(_, p)| coupled(*p)).collect())
+                .map(|k| (0..modes).map(|l| (l, position(k, l))).filter(|(_, p)| coupled[*p]).collect())
                 .collect();
         }
         start += group.constants();
