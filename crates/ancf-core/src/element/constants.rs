@@ -65,7 +65,7 @@ impl Constants {
                     // Enough to control every mode, and the whole energy where the element is as thick as it is long.
                     let share = (thickness / longer).powi(2).min(1.0);
                     let followed = sides.map(|side| side / projection.followed);
-                    let rough = RoughShares::new(tables, vectors, thickness, followed);
+                    let rough = RoughShares::new(shape_points(tables, vectors), thickness, followed);
                     let points: Vec<_> =
                         points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)).collect();
                     points.iter().for_each(|point| point.append(share * membrane, &mut values));
@@ -134,29 +134,26 @@ fn mean_sides<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N]) -> 
 /// A curved surface bends without stretching in fields that the element cannot follow in these parts. What it cannot
 /// follow, a wave of the wave number `1 / length` and more, would stretch it: with an energy that is that of bending
 /// over this share, and must not be more than that of bending.
-struct RoughShares {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RoughShares {
     /// Of `E_xx`, `E_yy`: `C` is the mean Gaussian curvature `|K|`, `length` the longer one.
-    normal: f64,
+    pub normal: f64,
     /// Of the squares of x and of y in `E_xy`: `C` is `|K|` or the square of the mean curvature along x (or y), whichever is
     /// larger, and `length` the one in that direction. A cylinder twists in waves along its curved side.
-    shear: [f64; 2],
+    pub shear: [f64; 2],
 }
 
 impl RoughShares {
-    fn new<const N: usize>(tables: &Tables<N>, reference: &[[f64; 3]; N], thickness: f64, length: [f64; 2]) -> Self {
+    /// From weights and derivatives along x, y, xx, yy and xy of the reference position at points of the element.
+    pub fn new(points: impl Iterator<Item = (f64, [Vector3<f64>; 5])>, thickness: f64, length: [f64; 2]) -> Self {
         let (mut gaussian, mut along, mut total) = (0.0, [0.0; 2], 0.0);
-        for group in &tables.groups {
-            if let Group::Bending(samples, _) = group {
-                for (table, weight) in samples.tables.iter().zip(&samples.weights) {
-                    let [x, y, xx, yy, xy] = table.map(|row| interpolate(&row, reference));
-                    let n = x.cross(&y);
-                    let [b_xx, b_yy, b_xy] = [xx, yy, xy].map(|second| second.dot(&n) / n.norm());
-                    gaussian += weight * (b_xx * b_yy - b_xy.powi(2)) / n.norm_squared();
-                    along[0] += weight * b_xx / x.norm_squared();
-                    along[1] += weight * b_yy / y.norm_squared();
-                    total += weight;
-                }
-            }
+        for (weight, [x, y, xx, yy, xy]) in points {
+            let n = x.cross(&y);
+            let [b_xx, b_yy, b_xy] = [xx, yy, xy].map(|second| second.dot(&n) / n.norm());
+            gaussian += weight * (b_xx * b_yy - b_xy.powi(2)) / n.norm_squared();
+            along[0] += weight * b_xx / x.norm_squared();
+            along[1] += weight * b_yy / y.norm_squared();
+            total += weight;
         }
         let gaussian = gaussian.abs() / total;
         let share = |curvature: f64, length: f64| (thickness.powi(2) / (12.0 * curvature * length.powi(4))).min(1.0);
@@ -165,6 +162,21 @@ impl RoughShares {
             shear: [0, 1].map(|a| share(gaussian.max((along[a] / total).powi(2)), length[a])),
         }
     }
+}
+
+/// Weights and derivatives of the reference position at the points at which curvature is sampled.
+fn shape_points<'a, const N: usize>(
+    tables: &'a Tables<N>,
+    reference: &'a [[f64; 3]; N],
+) -> impl Iterator<Item = (f64, [Vector3<f64>; 5])> + 'a {
+    let bending = tables.groups.iter().filter_map(|group| match group {
+        Group::Bending(samples, _) => Some(samples),
+        _ => None,
+    });
+    bending.flat_map(move |samples| {
+        let derivatives = samples.tables.iter().map(move |table| table.map(|row| interpolate(&row, reference)));
+        samples.weights.iter().copied().zip(derivatives)
+    })
 }
 
 /// A sample in the reference state.

@@ -24,10 +24,10 @@ mod tables;
 mod thin;
 
 pub use block::{At, ElementBlock, Motion, Portion, Want};
-pub(crate) use constants::Section;
+pub(crate) use constants::{RoughShares, Section};
 pub(crate) use kind::Variant;
 pub use kind::{Kind, NodalVector};
 pub use operations::Operations;
 pub use pairs::{tangent_place, tangent_size};
-pub(crate) use projection::SHEAR;
 pub use thin::Membrane;
+pub(crate) use thin::followed;

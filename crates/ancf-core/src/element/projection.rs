@@ -51,7 +51,7 @@ pub(crate) struct Projection<const N: usize> {
 ///
 /// Without the last two the lines across a strip of one element may bend to cubics for nothing, and with them a strip is
 /// three times too soft in its plane.
-pub(crate) const SHEAR: [[usize; 2]; 6] = [[0, 0], [0, 1], [1, 0], [1, 1], [2, 0], [0, 2]];
+const SHEAR: [[usize; 2]; 6] = [[0, 0], [0, 1], [1, 0], [1, 1], [2, 0], [0, 2]];
 
 /// Number of modes of `E_xx` and `E_yy`.
 const NORMAL: usize = 16;

@@ -4,7 +4,7 @@ use crate::quadrature::Rule;
 use crate::shape::{Polynomial, acm, hermite};
 
 use super::corners::functions;
-use super::kind::Variant;
+use super::kind::{Kind, Variant};
 use super::projection::Projection;
 use super::tables::{Derivatives, Group, Samples, Tables, derivative};
 
@@ -48,7 +48,7 @@ impl Membrane {
 ///
 /// Dufva and Shabana (2005), section 3 and Appendix 2.
 pub(crate) fn thin36(sides: [f64; 2], variant: Variant) -> Tables<12> {
-    tables(sides, acm(sides), variant, 1.0)
+    tables(sides, acm(sides), variant, followed(Kind::Thin36))
 }
 
 /// The thin plate with 48 degrees of freedom, whose slope is continuous too.
@@ -57,7 +57,12 @@ pub(crate) fn thin36(sides: [f64; 2], variant: Variant) -> Tables<12> {
 ///
 /// Dmitrochenko and Pogorelov (2003).
 pub(crate) fn thin48(sides: [f64; 2], variant: Variant) -> Tables<16> {
-    tables(sides, hermite(sides), variant, 12.0_f64.sqrt().sqrt())
+    tables(sides, hermite(sides), variant, followed(Kind::Thin48))
+}
+
+/// The wave number times the side up to which an element follows a curved surface that bends without stretching.
+pub(crate) fn followed(kind: Kind) -> f64 {
+    if kind == Kind::Thin48 { 12.0_f64.sqrt().sqrt() } else { 1.0 }
 }
 
 /// The tables of a thin element with any shape functions; `followed` is for the [projection](Projection).

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::element::{Membrane, SHEAR};
+use crate::element::{Membrane, RoughShares, followed};
 use crate::model::{Body, Model, Plate};
 use crate::quadrature::{Rule, legendre};
 use crate::strain::SOLID_PAIRS;
@@ -36,15 +36,25 @@ impl Section {
                 let rule = Rule::Gauss(4);
                 let centre = station([0.5; 2]);
                 let [l, w] = body.grid().element_sides();
-                let longer = (l * centre.reference[1].norm()).max(w * centre.reference[2].norm());
-                let share = (body.plate().thickness / longer).powi(2).min(1.0);
+                let sides = [l * centre.reference[1].norm(), w * centre.reference[2].norm()];
+                let thickness = body.plate().thickness;
+                let share = (thickness / sides[0].max(sides[1])).powi(2).min(1.0);
+                let lengths = sides.map(|side| side / followed(body.plate().element));
+                let shape = Rule::Gauss(3).square().into_iter().map(|(at, weight)| {
+                    let [_, x, y, xx, yy, xy] = station(at).reference;
+                    (weight, [x, y, xx, yy, xy])
+                });
+                let rough = RoughShares::new(shape, thickness, lengths);
                 let [cubic_x, cubic_y] = point.map(|at| lagrange(rule, at));
                 let [fit_x, fit_y] = point.map(|at| least_squares(rule, at));
                 let weights = |k: usize| {
                     let [x, y] = [fit_x[k % 4], fit_y[k / 4]];
-                    let linear = [(x[0] + x[1]) * cubic_y[k / 4], cubic_x[k % 4] * (y[0] + y[1])];
-                    let shear = SHEAR.iter().map(|&[in_x, in_y]| x[in_x] * y[in_y]).sum();
-                    (1.0 - share) * Vector3::new(linear[0], linear[1], shear)
+                    let [in_x, in_y] = [x[0] + x[1], y[0] + y[1]];
+                    // What is not bilinear carries its share of energy, and of force.
+                    let along_x = in_x * (in_y + rough.normal * (cubic_y[k / 4] - in_y));
+                    let along_y = in_y * (in_x + rough.normal * (cubic_x[k % 4] - in_x));
+                    let shear = in_x * in_y + rough.shear[0] * x[2] * y[0] + rough.shear[1] * x[0] * y[2];
+                    (1.0 - share) * Vector3::new(along_x, along_y, shear)
                 };
                 let projected = rule.square().into_iter().enumerate().map(|(k, (at, _))| (at, weights(k)));
                 projected.chain([(point, Vector3::repeat(share))]).collect()
