@@ -34,6 +34,8 @@ def show(value: object) -> str:
 def one_of(allowed: Iterable[str], given: object = None) -> str:
     """Say what is allowed, and which of it is nearest to what was given."""
     names = list(allowed)
+    if not names:
+        return "there is none"
     near = get_close_matches(given, names, n=1) if isinstance(given, str) and len(names) > 1 else []
     hint = f"; did you mean {near[0]}?" if near else ""
     return f"{'allowed are' if len(names) > 1 else 'allowed is'} {', '.join(names)}{hint}"

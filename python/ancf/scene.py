@@ -159,7 +159,8 @@ class Scene:
         if isinstance(self.run, Dynamic):
             start = partial(self.run.start, checkpoint=checkpoint, resume=resume)
         elif checkpoint is not None or resume is not None:
-            raise InputError(Mistake(("checkpoint",), "is for motion only"))
+            given = "checkpoint" if resume is None else "resume"
+            raise InputError(Mistake((given,), "is for motion only"))
         with _scene_paths({}):
             if isinstance(self.run, Modes):
                 return find_modes(self.model, self.run, threads=threads, progress=progress, throw=throw)
