@@ -6,13 +6,15 @@ and y a length, so that entries of one matrix differ by powers of the radius.
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import ancf
 from ancf.bodies import NODAL_VECTORS, Plate
+from ancf.run import Method
 
 Units: TypeAlias = tuple[float, float, float]
 
@@ -24,7 +26,7 @@ UNITS = [(2.0**-15, 2.0**-40, 2.0**-7), (2.0**16, 2.0**30, 2.0**5)]
 def plate(units: Units, shape: str, element: str, membrane: str | None) -> Plate:
     metre, kilogram, second = units
     stress = kilogram / metre / second**2
-    common = {
+    common: dict[str, Any] = {
         "divisions": (3, 2),
         "thickness": 0.002 * metre,
         "material": ancf.Material(E=1e7 * stress, nu=0.3, density=1000.0 * kilogram / metre**3),
@@ -51,10 +53,11 @@ def model(units: Units, shape: str, element: str, membrane: str | None) -> ancf.
     )
 
 
-def displacements(result: ancf.Result, units: Units, element: str) -> np.ndarray:
+def displacements(result: ancf.Result, units: Units, element: str) -> NDArray[np.float64]:
     """Displacements of the nodes at the end, in metres."""
     moved = result.q[-1] - result.model.nodal_coordinates()
-    return moved.reshape(-1, len(NODAL_VECTORS[element]), 3)[:, 0] / units[0]
+    positions: NDArray[np.float64] = moved.reshape(-1, len(NODAL_VECTORS[element]), 3)[:, 0] / units[0]
+    return positions
 
 
 def assert_same(found: ancf.Result, expected: ancf.Result, units: Units, element: str) -> None:
@@ -94,7 +97,7 @@ def test_frequencies_are_the_same(units: Units, shape: str) -> None:
 
 @pytest.mark.parametrize("units", UNITS)
 @pytest.mark.parametrize(("method", "step"), [("hht", 1e-3), ("esdirk", 2e-3), ("verlet", 2e-5)])
-def test_motions_are_the_same(units: Units, method: str, step: float) -> None:
+def test_motions_are_the_same(units: Units, method: Method, step: float) -> None:
     expected, found = (
         ancf.simulate(model(u, "cylinder", "thin36", "projected"), until=0.02 * u[2], step=step * u[2], method=method)
         for u in (SI, units)

@@ -70,8 +70,18 @@ class ModalResult:
 
     @property
     def states(self) -> int:
-        """How many modes there are."""
+        """How many modes there are, as `reached`."""
         return len(self.frequency)
+
+    @property
+    def reached(self) -> int:
+        """How many modes were found."""
+        return len(self.frequency)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful about the modes: nothing, they are proved complete or the run fails."""
+        return ()
 
     @property
     def unstable(self) -> int:
