@@ -135,6 +135,36 @@ def test_states_may_be_arrays_of_any_kind(pendulum: ancf.Model) -> None:
     np.testing.assert_array_equal(still.q, ancf.simulate(pendulum, until=0.01, step=5e-3).q)
 
 
+def test_what_is_optional_may_be_none(pendulum: ancf.Model) -> None:
+    support = ancf.Support(at="edge:x0", clamp=True, translation=None, shake=None, rotation=None, symmetry=None)
+    assert support == ancf.Support(at="edge:x0", clamp=True)
+    assert ancf.Gravity(acceleration=(0.0, 0.0, -9.81), history=None) == pendulum.loads[0]
+
+
+def test_results_are_compared_by_identity(pendulum: ancf.Model) -> None:
+    result, other = (ancf.simulate(pendulum, until=0.01, step=5e-3) for _ in range(2))
+    assert result == result  # noqa: PLR0124
+    assert result != other
+    assert result.energy != other.energy
+
+
+def test_a_changed_copy_is_checked_and_made_anew(pendulum: ancf.Model) -> None:
+    finer = pendulum.model_copy(
+        update={"bodies": {"plate": pendulum.bodies["plate"].model_copy(update={"divisions": (3, 2)})}}
+    )
+    assert (finer.elements, len(finer.nodal_coordinates())) == (6, 9 * 12)
+    with pytest.raises(ancf.InputError, match=r"thickness = 0: must be greater than 0"):
+        pendulum.bodies["plate"].model_copy(update={"thickness": 0})
+
+
+def test_a_long_narrow_strip_is_held_at_its_ends(rubber: ancf.Material) -> None:
+    strip = ancf.Rectangle(size=(10.0, 1e-3), divisions=(4, 1), thickness=1e-4, material=rubber)
+    ends = [ancf.Support(at=edge, fix=["r"]) for edge in ("edge:x0", "edge:x1")]
+    assert ancf.Model(bodies={"strip": strip}, supports=ends).rigid_motions() == []
+    hinge = [ancf.Support(at=corner, fix=["r"]) for corner in ("corner:x0y0", "corner:x1y0")]
+    assert ancf.Model(bodies={"strip": strip}, supports=hinge).rigid_motions() == [("strip", "rotation about x")]
+
+
 def test_outputs_beyond_the_end_by_rounding_are_at_the_end(pendulum: ancf.Model) -> None:
     result = ancf.simulate(pendulum, until=0.3, step=0.1, outputs=[n * 0.1 for n in (1, 2, 3)])
     assert result.t.tolist() == [0.0, 0.1, 0.2, 0.3]

@@ -114,9 +114,11 @@ class Mistakes:
 
 @contextmanager
 def from_core(*path: str | int) -> Iterator[None]:
-    """Turn an error of the compiled module into `InputError`, its argument under `path`."""
+    """Turn an error of the compiled module into `InputError`, its argument under `path`; so are other `InputError`s."""
     try:
         yield
+    except InputError as error:
+        raise error.under(*path) from None
     except _core.InputError as error:
         raise InputError(Mistake((*path, error.argument), f"allowed is {error.allowed}", error.value)) from None
 

@@ -43,6 +43,10 @@ class Input(BaseModel):
         except ValidationError as error:
             raise InputError(*_mistakes(error, type(self))) from None
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return the same input with some values replaced, and checked as any other."""
+        return type(self)(**dict(self) | dict(update or {}))
+
     def document(self) -> dict[str, Any]:
         """Return what makes the same input, in the words of scene files, without what is as by default."""
         tags = {key: getattr(type(self), key) for key in _TAGS if hasattr(type(self), key)}

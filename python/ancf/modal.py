@@ -27,7 +27,7 @@ FloatArray = NDArray[np.float64]
 _AMPLITUDE = 0.1
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ModalResult:
     """Small oscillations about a state: frequencies in increasing order, and shapes.
 

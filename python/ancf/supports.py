@@ -112,8 +112,8 @@ class Support(OnBody):
     clamp: bool = False
     symmetry: Axis | None = None
     translation: Annotated[Sequence[tuple[float, float, float, float]], AfterValidator(_check_rows)] | None = None
-    shake: Annotated[Shake | None, PlainValidator(table(Shake))] = None
-    rotation: Annotated[Rotation | None, PlainValidator(table(Rotation))] = None
+    shake: Annotated[Shake, PlainValidator(table(Shake))] | None = None
+    rotation: Annotated[Rotation, PlainValidator(table(Rotation))] | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:
