@@ -5,7 +5,7 @@
 use pulp::Simd;
 
 use crate::lanes::{Lanes, Vector};
-use crate::strain::{Block, Curvature, Form, GreenLagrange, Measure, Metric};
+use crate::strain::{Block, Curvature, Form, GreenLagrange, Measure, Metric, SOLID_PAIRS};
 
 use super::constants::Couplings;
 use super::moments::Moments;
@@ -63,12 +63,15 @@ pub(super) struct Sample<S: Simd, const D: usize, const C: usize> {
 pub(crate) struct Totals<S: Simd, const N: usize> {
     /// Force on each vector.
     pub force: [Vector<S>; N],
-    /// Membrane and bending energy; that of a solid counts as the first.
+    /// Membrane and bending energy: of a solid that of strains which are odd across the thickness is the second, all else the
+    /// first.
     pub energy: [Lanes<S>; 2],
     /// Power of a unit viscosity, and the energy that mean forces miss.
     pub rates: [Lanes<S>; 2],
     /// Forces on the gradient vectors of a patch, which become those on the nodal vectors.
     pub(super) on_gradients: [Vector<S>; MOST_GRADIENTS],
+    /// Strains at the points of a solid, layer after layer.
+    layers: [[Lanes<S>; SOLID]; 2 * SOLID_LAYER],
 }
 
 /// The tangent of a batch, which is added to.
@@ -86,6 +89,10 @@ pub(crate) struct Tangent<S: Simd, const N: usize> {
 /// The most gradient vectors of a patch: two at 4 x 4 points, three for a solid.
 pub(super) const MOST_GRADIENTS: usize = 48;
 
+/// Number of strain components of a solid, and of its points in each of two layers.
+const SOLID: usize = SOLID_PAIRS.len();
+const SOLID_LAYER: usize = 16;
+
 /// The most pairs of gradient vectors at the points of a patch, 135 for the curvature at 3 x 3 points, and the tangent of
 /// 16 vectors, 160 blocks.
 const MOST_PAIRS: usize = 160;
@@ -95,7 +102,13 @@ impl<S: Simd, const N: usize> Totals<S, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let zero = Lanes::splat(simd, 0.0);
-        Self { energy: [zero; 2], rates: [zero; 2], force: [[zero; 3]; N], on_gradients: [[zero; 3]; MOST_GRADIENTS] }
+        Self {
+            energy: [zero; 2],
+            rates: [zero; 2],
+            force: [[zero; 3]; N],
+            on_gradients: [[zero; 3]; MOST_GRADIENTS],
+            layers: [[zero; SOLID]; 2 * SOLID_LAYER],
+        }
     }
 
     /// Zeros again.
@@ -147,7 +160,8 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
                     self.samples::<Curvature<S>, 5, 3>(samples, *law, own, 1, totals, tangent);
                 }
                 Group::Solid(samples) => {
-                    self.samples::<GreenLagrange<S>, 3, 6>(samples, (), own, 0, totals, tangent);
+                    self.samples::<GreenLagrange<S>, 3, SOLID>(samples, (), own, 0, totals, tangent);
+                    totals.split_layers(own);
                 }
             }
         }
@@ -165,9 +179,12 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
         mut tangent: Option<&mut Tangent<S, N>>,
     ) {
         let mut constants = constants.chunks_exact(point_constants(C));
-        for patch in &samples.patches {
+        for (layer, patch) in samples.patches.iter().enumerate() {
             for (g, constants) in constants.by_ref().take(patch.points).enumerate() {
                 let sample = self.sample::<M, D, C>(patch, g, law, constants, tangent.is_some());
+                if C == SOLID {
+                    totals.layers[layer * SOLID_LAYER + g].copy_from_slice(&sample.strain);
+                }
                 let form = tangent.as_deref_mut().map(|tangent| Form::new(&mut tangent.forms, patch.points, g));
                 let force = self.point::<M, D, C>(&sample, law, constants, None, part, totals, form);
                 totals.on_gradients[g * D..(g + 1) * D].copy_from_slice(&force);
@@ -283,6 +300,25 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
 }
 
 impl<S: Simd, const N: usize> Totals<S, N> {
+    /// Counts the energy of the parts of a solid's strains that are odd across the thickness, half the difference of the
+    /// layers, as bending; `constants` are those of the points.
+    #[inline(always)]
+    fn split_layers(&mut self, constants: &[Lanes<S>]) {
+        let (below, above) = constants.split_at(constants.len() / 2);
+        let size = point_constants(SOLID);
+        for (g, (below, above)) in below.chunks_exact(size).zip(above.chunks_exact(size)).enumerate() {
+            let twice = difference(self.layers[SOLID_LAYER + g], self.layers[g]);
+            for i in 0..SOLID {
+                for j in 0..SOLID {
+                    let place = 1 + SOLID + SOLID * i + j;
+                    let energy = (below[place] + above[place]) * twice[j] * twice[i] * 0.125;
+                    self.energy[0] = self.energy[0] - energy;
+                    self.energy[1] = self.energy[1] + energy;
+                }
+            }
+        }
+    }
+
     /// Adds what strain rates do: `viscous` is their stress for a unit viscosity, `stress` the elastic one.
     #[inline(always)]
     pub fn add_rates(&mut self, stress: &[Lanes<S>], viscous: &[Lanes<S>], rate: &[Lanes<S>], missed: &[Lanes<S>]) {
