@@ -145,10 +145,10 @@ class Thin(Element):
         """Part of the weight W for the strain as it is, not projected, shape (elements, m, m).
 
         A share delta = min(1, (h / l)^2), l the larger side, of all. Besides, where lines along x are curved within the
-        surface, a share of the stiffness that E_yy has where no stress holds the other components, and likewise of E_xx:
-        (k w)^2, k the mean geodesic curvature of these lines, w the side across them, times the share `smooth` of what
-        is not bilinear. Without it lines across a curved strip of one element may stretch to cubics for nothing, which
-        takes part of the bending strain along the strip away.
+        surface, a share of the stiffness that E_yy has where no stress holds the other components, and likewise of
+        E_xx: (k w)^2, k the mean geodesic curvature of these lines, w the side across them, times the share `smooth` of
+        what is not bilinear. Without it lines across a curved strip of one element may stretch to cubics for nothing,
+        which takes part of the bending strain along the strip away.
         """
         sides = self._sides()
         delta = np.minimum(1, (self.thickness / sides.max(axis=0)) ** 2)

@@ -207,7 +207,8 @@ fn constant_curvature_has_its_energy() {
         let energy = system.internal_force(&q, &mut vec![0.0; q.len()]);
         let tolerance = if element.is_solid() { 1e-7 } else { 1e-10 };
         assert!((energy.bending / expected - 1.0).abs() < tolerance, "{name}: {energy:?}, expected {expected:e}");
-        assert!(energy.membrane.abs() < tolerance * expected, "{name}: {energy:?}");
+        // Membrane strains are of the order of the square of the curvature.
+        assert!(energy.membrane.abs() < 1e-7 * expected, "{name}: {energy:?}");
 
         // The forces to first order, where a solid's rounding and the products of curvatures do not cover them.
         let rest = system.model().reference().to_vec();
