@@ -70,8 +70,6 @@ pub(crate) struct Totals<S: Simd, const N: usize> {
     pub rates: [Lanes<S>; 2],
     /// Forces on the gradient vectors of a patch, which become those on the nodal vectors.
     pub(super) on_gradients: [Vector<S>; MOST_GRADIENTS],
-    /// Strains at the points of a solid, layer after layer.
-    layers: [[Lanes<S>; SOLID]; 2 * SOLID_LAYER],
 }
 
 /// The tangent of a batch, which is added to.
@@ -89,8 +87,10 @@ pub(crate) struct Tangent<S: Simd, const N: usize> {
 /// The most gradient vectors of a patch: two at 4 x 4 points, three for a solid.
 pub(super) const MOST_GRADIENTS: usize = 48;
 
-/// Number of strain components of a solid, and of its points in each of two layers.
+/// Number of strain components of a solid.
 const SOLID: usize = SOLID_PAIRS.len();
+
+/// Number of points in each of its two layers.
 const SOLID_LAYER: usize = 16;
 
 /// The most pairs of gradient vectors at the points of a patch, 135 for the curvature at 3 x 3 points, and the tangent of
@@ -102,13 +102,7 @@ impl<S: Simd, const N: usize> Totals<S, N> {
     #[inline(always)]
     pub fn new(simd: S) -> Self {
         let zero = Lanes::splat(simd, 0.0);
-        Self {
-            energy: [zero; 2],
-            rates: [zero; 2],
-            force: [[zero; 3]; N],
-            on_gradients: [[zero; 3]; MOST_GRADIENTS],
-            layers: [[zero; SOLID]; 2 * SOLID_LAYER],
-        }
+        Self { energy: [zero; 2], rates: [zero; 2], force: [[zero; 3]; N], on_gradients: [[zero; 3]; MOST_GRADIENTS] }
     }
 
     /// Zeros again.
@@ -161,7 +155,6 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
                 }
                 Group::Solid(samples) => {
                     self.samples::<GreenLagrange<S>, 3, SOLID>(samples, (), own, 0, totals, tangent);
-                    totals.split_layers(own);
                 }
             }
         }
@@ -178,12 +171,20 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
         totals: &mut Totals<S, N>,
         mut tangent: Option<&mut Tangent<S, N>>,
     ) {
+        let first = constants;
         let mut constants = constants.chunks_exact(point_constants(C));
+        // Strains of the first of a solid's two layers of points.
+        let mut below = if C == SOLID { Some([[first[0]; C]; SOLID_LAYER]) } else { None };
         for (layer, patch) in samples.patches.iter().enumerate() {
             for (g, constants) in constants.by_ref().take(patch.points).enumerate() {
                 let sample = self.sample::<M, D, C>(patch, g, law, constants, tangent.is_some());
-                if C == SOLID {
-                    totals.layers[layer * SOLID_LAYER + g].copy_from_slice(&sample.strain);
+                match &mut below {
+                    Some(below) if layer == 0 => below[g] = sample.strain,
+                    Some(below) => {
+                        let first = &first[g * constants.len()..][..constants.len()];
+                        totals.split(first, constants, difference(sample.strain, below[g]));
+                    }
+                    None => {}
                 }
                 let form = tangent.as_deref_mut().map(|tangent| Form::new(&mut tangent.forms, patch.points, g));
                 let force = self.point::<M, D, C>(&sample, law, constants, None, part, totals, form);
@@ -300,21 +301,16 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
 }
 
 impl<S: Simd, const N: usize> Totals<S, N> {
-    /// Counts the energy of the parts of a solid's strains that are odd across the thickness, half the difference of the
-    /// layers, as bending; `constants` are those of the points.
+    /// Counts the energy of the part of a solid's strain that is odd across the thickness as bending: `twice` that part,
+    /// at two points on top of each other with the constants `below` and `above`.
     #[inline(always)]
-    fn split_layers(&mut self, constants: &[Lanes<S>]) {
-        let (below, above) = constants.split_at(constants.len() / 2);
-        let size = point_constants(SOLID);
-        for (g, (below, above)) in below.chunks_exact(size).zip(above.chunks_exact(size)).enumerate() {
-            let twice = difference(self.layers[SOLID_LAYER + g], self.layers[g]);
-            for i in 0..SOLID {
-                for j in 0..SOLID {
-                    let place = 1 + SOLID + SOLID * i + j;
-                    let energy = (below[place] + above[place]) * twice[j] * twice[i] * 0.125;
-                    self.energy[0] = self.energy[0] - energy;
-                    self.energy[1] = self.energy[1] + energy;
-                }
+    fn split<const C: usize>(&mut self, below: &[Lanes<S>], above: &[Lanes<S>], twice: [Lanes<S>; C]) {
+        let weights = (&below[1 + C..], &above[1 + C..]);
+        for i in 0..C {
+            for j in 0..C {
+                let energy = (weights.0[C * i + j] + weights.1[C * i + j]) * twice[j] * twice[i] * 0.125;
+                self.energy[0] = self.energy[0] - energy;
+                self.energy[1] = self.energy[1] + energy;
             }
         }
     }
