@@ -64,32 +64,33 @@ fn add_whole<S: Simd, const SIDE: usize>(
     let pair: &[[f64; SIDE]; SIDE] = pair.as_chunks().0.try_into().expect("a square");
     let begin = offset.map_or(0, |offset| SIDE + offset);
     if transposed {
-        add_columns(simd, early, begin, &Transpose::new(simd).square(pair), target);
+        add_columns(simd, early.length as usize, &Transpose::new(simd).square(pair), &mut target[begin..]);
     } else {
-        add_columns(simd, early, begin, pair, target);
+        add_columns(simd, early.length as usize, pair, &mut target[begin..]);
     }
 }
 
-/// Adds the columns of a block, the first from `begin` on.
+/// Adds the columns of a block to those of a node, of which the first has `length` entries.
 #[inline(always)]
 fn add_columns<S: Simd, const SIDE: usize>(
     simd: S,
-    early: &Corner,
-    mut begin: usize,
+    length: usize,
     block: &[[f64; SIDE]; SIDE],
-    target: &mut [f64],
+    mut target: &mut [f64],
 ) {
     for (j, column) in block.iter().enumerate() {
         // What lies above the diagonal is zero, and may be added to the end of the column before.
-        let target = target[begin..].first_chunk_mut::<SIDE>().expect("rows of the node");
-        let ((sums, last), (parts, others)) = (S::as_mut_simd_f64s(target), S::as_simd_f64s(column));
+        let entries = target.first_chunk_mut::<SIDE>().expect("rows of the node");
+        let ((sums, last), (parts, others)) = (S::as_mut_simd_f64s(entries), S::as_simd_f64s(column));
         for (sum, part) in sums.iter_mut().zip(parts) {
             *sum = simd.add_f64s(*sum, *part);
         }
         for (sum, part) in last.iter_mut().zip(others) {
             *sum += part;
         }
-        begin += early.length as usize - j - 1;
+        if j + 1 < SIDE {
+            target = &mut target[length - j - 1..];
+        }
     }
 }
 
