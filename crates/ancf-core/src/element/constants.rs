@@ -49,7 +49,9 @@ impl Constants {
         let Section { material, thickness } = section;
         let membrane = thickness;
         let bending = thickness.powi(3) / 12.0;
-        let vectors = &combine_all(reference);
+        let mut combined = *reference;
+        combine_all(&mut combined);
+        let vectors = &combined;
         let surface = |gradients: &[Vector3<f64>]| plane_stress(material, &gradients[0], &gradients[1]);
         let mut values = Vec::new();
         for group in &tables.groups {

@@ -73,6 +73,12 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
         let order = Transpose::new(simd);
         let mut constants_of = [u32::MAX; MAX_LANES];
         let mut totals = Totals::<S, N>::new(simd);
+        let velocity = at.motion.filter(|_| block.flows(at)).map(|motion| motion.velocity);
+        let others = [at.start, velocity, want.and_then(|want| want.previous)];
+        // Rooms that are filled anew for each portion: to clear them takes as long as to fill them.
+        let mut numbers = [[[0.0; MAX_LANES]; 3]; N];
+        let mut current = Aligned([[Lanes::splat(simd, 0.0); 3]; N]);
+        let [mut start, mut velocity, mut previous] = others.map(|q| q.map(|_| current));
         for elements in elements.chunks(S::F64_LANES) {
             // Beyond the last element it is repeated; what it gives there does not count.
             let count = elements.len();
@@ -97,17 +103,11 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
                 constants_of = class_of;
             }
 
-            let current = gather(simd, order, &block.vectors, members, at.q);
-            let [mut start, mut velocity, mut previous] = [const { None }; 3];
-            if let Some(q) = at.start {
-                start = Some(gather(simd, order, &block.vectors, members, q));
-            }
-            let motion = at.motion.filter(|_| block.flows(at));
-            if let Some(motion) = motion {
-                velocity = Some(gather(simd, order, &block.vectors, members, motion.velocity));
-            }
-            if let Some(q) = want.and_then(|want| want.previous) {
-                previous = Some(gather(simd, order, &block.vectors, members, q));
+            gather(simd, order, &block.vectors, members, at.q, &mut numbers, &mut current);
+            for (to, q) in [&mut start, &mut velocity, &mut previous].into_iter().zip(others) {
+                if let (Some(to), Some(q)) = (to, q) {
+                    gather(simd, order, &block.vectors, members, q, &mut numbers, to);
+                }
             }
             totals.clear(simd);
             if let Some(room) = &mut room {
@@ -128,7 +128,8 @@ impl<const N: usize> WithSimd for Task<'_, '_, N> {
 
             let energy = by_element(order, totals.energy);
             let rates = by_element(order, totals.rates);
-            store(order, distribute_all(&totals.force).as_flattened(), force);
+            distribute_all(&mut totals.force);
+            store(order, totals.force.as_flattened(), force);
             let mut tangent = [].as_mut_slice();
             if let (Some(want), Some(room)) = (want, room.as_deref_mut()) {
                 let Room { combined: Tangent { blocks, forms, .. }, elements } = room;
@@ -184,8 +185,9 @@ fn gather<S: Simd, const N: usize>(
     vectors: &[[u32; N]],
     members: &[u32],
     q: &[f64],
-) -> Aligned<[Vector<S>; N]> {
-    let mut numbers = [[[0.0; MAX_LANES]; 3]; N];
+    numbers: &mut [[[f64; MAX_LANES]; 3]; N],
+    Aligned(lanes): &mut Aligned<[Vector<S>; N]>,
+) {
     for (&member, &lane) in members.iter().zip(&order.lanes) {
         for a in 0..N {
             let vector = &q[3 * vectors[member as usize][a] as usize..][..3];
@@ -194,13 +196,12 @@ fn gather<S: Simd, const N: usize>(
             }
         }
     }
-    let mut lanes = [[Lanes::splat(simd, 0.0); 3]; N];
     for a in 0..N {
         for i in 0..3 {
             lanes[a][i] = Lanes::from_array(simd, &numbers[a][i]);
         }
     }
-    Aligned(combine_all(&lanes))
+    combine_all(lanes);
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Newton's method: plain, with mixed integration points, and modified.
 
 use crate::assembly::System;
-use crate::linear::gmres;
+use crate::linear::{dot, gmres};
 use crate::observe::Observer;
 
 use super::convergence::Convergence;
@@ -285,10 +285,6 @@ fn stay_in_plane(system: &mut System, normal: &[f64], q: &[f64], t: f64, correct
     let change = dot(normal, correction) / dot(normal, &rate);
     correction.iter_mut().zip(&rate).for_each(|(c, v)| *c -= change * v);
     change
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The larger of two numbers; NaN if either is.
