@@ -14,6 +14,8 @@ Values = Sequence[FloatArray]
 RATES = (0.5, 2.0)
 """Rates of convergence are taken to lie here: a lower one is no convergence, a higher one may be an accident."""
 UNKNOWN_RATE = 1.0
+_FASTEST = 3.0
+"""Differences that shrink faster are small by accident: no more than this is believed of them."""
 SAFETY = 1.2
 
 
@@ -46,8 +48,15 @@ class Side:
     rate: float | None
 
     @property
+    def sudden(self) -> bool:
+        """Whether the difference shrank faster than is believed."""
+        return self.rate is not None and self.rate > _FASTEST
+
+    @property
     def error(self) -> float:
         """What is left along the side, relative, with safety."""
         low, high = RATES
-        rate = UNKNOWN_RATE if self.rate is None else min(max(self.rate, low), high)
-        return float(SAFETY * self.difference / (2.0**rate - 1.0))
+        if self.rate is None:
+            return float(SAFETY * self.difference / (2.0**UNKNOWN_RATE - 1.0))
+        difference = self.difference * 2.0 ** max(self.rate - _FASTEST, 0.0)
+        return float(SAFETY * difference / (2.0 ** min(max(self.rate, low), high) - 1.0))

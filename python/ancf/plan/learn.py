@@ -58,7 +58,7 @@ def learn(search: Search, climb: Climb) -> None:
     # Nothing is known of a side along which no coarser rung reached its end.
     known = all(side in climb.sides for side in rung.sides())
     climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
-    if last is not None and refined:
+    if last is not None and refined and not any(climb.sides[side].sudden for side in refined if side in climb.sides):
         _extrapolate(search, climb, last, scale, refined)
         _agree(search, climb, scale)
 
