@@ -19,7 +19,7 @@ from ancf.plan.timing import SHARE
 
 BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
-_CLEAR, _LITTLE = 0.1, 0.15
+_CLEAR, _LITTLE = 0.1, 0.2
 """The same that is tried for while the next rung costs no more than this part of the plan so far."""
 _COARSE, _MUCH = 0.45, 0.5
 """And that is enough where the next rung costs more than this part of it."""

@@ -21,7 +21,7 @@ _HOPELESS = 0.01
 """Chance below which a rung is not tried however little it costs."""
 _TAIL = 2
 """Power of a guessed error with which that chance falls: errors that cancel make it fall slowly."""
-_DOWN, _FEW = 0.6, 4
+_DOWN, _FEW = 0.5, 4
 """Time for the way down, relative to the time before; and how many rungs are tried anyway."""
 _NEAR, _SHORT, _TIMED = 1.5, 0.1, 3
 """Times the cheapest, and seconds, up to which a run is timed again before one is chosen; and how many at most."""
