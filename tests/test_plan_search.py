@@ -130,8 +130,9 @@ def test_no_more_of_a_sudden_agreement_is_believed_than_the_third_order_gives() 
     """Of a difference of 0.08 before, 0.01 is left at the third order, whatever was seen."""
     usual, sudden = Side(0.01, 3.0), Side(1e-6, np.log2(0.08 / 1e-6))
     assert sudden.error == pytest.approx(usual.error)
-    assert sudden.sudden
-    assert not usual.sudden
+    assert usual.steady
+    assert not sudden.steady
+    assert not Side(0.01, 0.5).steady
 
 
 class _Locking(pilots.Pilots):

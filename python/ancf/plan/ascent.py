@@ -12,7 +12,7 @@ import numpy as np
 from ancf.plan.climb import Climb
 from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import Choice, Family, Rung
-from ancf.plan.learn import COMPARED, learn
+from ancf.plan.learn import COMPARED, compare, learn
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
 from ancf.plan.timing import SHARE
@@ -83,7 +83,10 @@ class Ascent:
                 # Only its own error is still to be made smaller.
                 going = [lead]
             self._step(self._promising(going))
-        return any(climb.rung for climb in search.climbs)
+        reached = any(climb.rung for climb in search.climbs)
+        if reached and not going:
+            compare(search, search.lead)
+        return reached
 
     def _promising(self, going: Sequence[Climb]) -> Climb:
         """Return the climb whose next rung is the cheapest, of those that are not hopeless or cost little.

@@ -14,8 +14,8 @@ Values = Sequence[FloatArray]
 RATES = (0.5, 2.0)
 """Rates of convergence are taken to lie here: a lower one is no convergence, a higher one may be an accident."""
 UNKNOWN_RATE = 1.0
-_FASTEST = 3.0
-"""Differences that shrink faster are small by accident: no more than this is believed of them."""
+_SLOWEST, _FASTEST = 1.0, 3.0
+"""Rates of steady convergence. Differences that shrink faster are small by accident: no more is believed of them."""
 SAFETY = 1.2
 
 
@@ -48,9 +48,9 @@ class Side:
     rate: float | None
 
     @property
-    def sudden(self) -> bool:
-        """Whether the difference shrank faster than is believed."""
-        return self.rate is not None and self.rate > _FASTEST
+    def steady(self) -> bool:
+        """Whether the difference shrank neither hardly nor faster than is believed, as far as is known."""
+        return self.rate is None or _SLOWEST <= self.rate <= _FASTEST
 
     @property
     def error(self) -> float:
