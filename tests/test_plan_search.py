@@ -126,12 +126,23 @@ def test_one_mesh_tells_the_size_and_what_is_expected_the_rest() -> None:
     assert guess(Rung(THIN[0], ((2, 4),))) == pytest.approx(0.32 * (1 / 4 + 1 / 128))
 
 
-def test_no_more_of_a_sudden_agreement_is_believed_than_the_third_order_gives() -> None:
-    """Of a difference of 0.08 before, 0.01 is left at the third order, whatever was seen."""
-    usual, sudden = Side(0.01, 3.0), Side(1e-6, np.log2(0.08 / 1e-6))
-    assert sudden.error == pytest.approx(usual.error)
-    assert usual.steady
-    assert not sudden.steady
+class _Sudden(pilots.Pilots):
+    """Statics whose values are 1 and errors 0.5 / nx + 0.02 / ny; on 4 elements along x they happen to be without."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        nx, ny = choice.rung.divisions[0]
+        error = {2: 0.25, 4: 0.25 + 1e-4}.get(nx, 0.5 / nx) + 0.02 / ny
+        result: Any = SimpleNamespace(seconds={"setup": 0.0})
+        return pilots.Pilot(choice, result, [np.array([[0.0], [1.0 + error]])], float(choice.rung.elements), "ok")
+
+
+def test_differences_that_vanish_suddenly_are_not_believed() -> None:
+    """Four elements along x change nothing, as if the error of 0.25 were none: with eight it shows."""
+    search = _search(_Sudden(ancf.Scene("", _model(), ancf.Static()), ["A"], np.inf, 1), [], 0.05)
+    assert Ascent(search).up([THIN[0], CONTINUOUS])
+    assert abs(search.exact[0][1, 0] - 1.0) < 0.05
+    assert Side(1e-4, np.log2(0.25 / 1e-4)).sudden
+    assert not Side(1e-4, 5.0).sudden
     assert not Side(0.01, 0.5).steady
 
 

@@ -85,7 +85,9 @@ class Ascent:
             self._step(self._promising(going))
         reached = any(climb.rung for climb in search.climbs)
         if reached and not going:
-            compare(search, search.lead)
+            # The error of each may turn out to be larger, so that the other leads.
+            for _ in search.climbs:
+                compare(search, search.lead)
         return reached
 
     def _promising(self, going: Sequence[Climb]) -> Climb:
@@ -125,7 +127,8 @@ class Ascent:
         cost = np.inf if lead.ended else search.predict(lead.next) or 0.0
         spent = search.pilots.spent
         part = _CLEAR if cost <= _LITTLE * spent else BEST if cost <= _MUCH * spent else _COARSE
-        return lead.refined and lead.own <= part * search.tol and self._confirmed(search.best, part)
+        small = lead.refined and lead.own <= part * search.tol and (lead.ended or not lead.sudden)
+        return small and self._confirmed(search.best, part)
 
     def _step(self, climb: Climb) -> None:
         """Run the next rung of a climb and learn from it, or end the climb."""
@@ -192,7 +195,7 @@ class Ascent:
         On coarse meshes what locks hardly changes, so that the wrong family may have been taken.
         """
         rung = climb.rung
-        others = [other for other in self.search.climbs if other.refined and other is not climb]
+        others = [other for other in self.search.climbs if other.refined and not other.sudden and other is not climb]
         if rung is None or rung.elements > _RECONSIDERED or not others:
             return
         judge = min(others, key=lambda other: other.own)
@@ -266,6 +269,12 @@ class Ascent:
         """Double the elements along the sides whose error dominates."""
         rung = climb.next
         errors = {at: side.error for at, side in climb.sides.items()}
+        sudden = [at for at, side in climb.sides.items() if side.sudden]
+        if sudden and climb.own <= BEST * self.search.tol:
+            # All that is left is to see whether these errors are as small as they seem.
+            for at in sudden:
+                rung = rung.scaled(at, Fraction(2)) or rung
+            return rung
         if np.isinf(climb.own) or max(errors.values()) <= _SMALL_SIDE * self.search.tol:
             return _doubled(rung)
         worst = max(errors.values())

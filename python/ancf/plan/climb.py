@@ -62,6 +62,11 @@ class Climb:
             self.rate = float(np.clip(np.log2(before / self.own), *RATES))
 
     @property
+    def sudden(self) -> bool:
+        """Whether the difference along a side shrank too fast to be believed."""
+        return any(side.sudden for side in self.sides.values())
+
+    @property
     def family(self) -> Family:
         """The element and membrane."""
         return self.next.family

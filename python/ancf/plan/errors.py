@@ -14,8 +14,8 @@ Values = Sequence[FloatArray]
 RATES = (0.5, 2.0)
 """Rates of convergence are taken to lie here: a lower one is no convergence, a higher one may be an accident."""
 UNKNOWN_RATE = 1.0
-_SLOWEST, _FASTEST = 1.0, 3.0
-"""Rates of steady convergence. Differences that shrink faster are small by accident: no more is believed of them."""
+_SLOWEST, _FASTEST = 1.0, 5.0
+"""Rates of steady convergence: differences that shrink faster are small by accident."""
 SAFETY = 1.2
 
 
@@ -48,15 +48,18 @@ class Side:
     rate: float | None
 
     @property
+    def sudden(self) -> bool:
+        """Whether the difference shrank too fast to be believed."""
+        return self.rate is not None and self.rate > _FASTEST
+
+    @property
     def steady(self) -> bool:
-        """Whether the difference shrank neither hardly nor faster than is believed, as far as is known."""
+        """Whether the difference shrank neither hardly nor suddenly, as far as is known."""
         return self.rate is None or _SLOWEST <= self.rate <= _FASTEST
 
     @property
     def error(self) -> float:
         """What is left along the side, relative, with safety."""
         low, high = RATES
-        if self.rate is None:
-            return float(SAFETY * self.difference / (2.0**UNKNOWN_RATE - 1.0))
-        difference = self.difference * 2.0 ** max(self.rate - _FASTEST, 0.0)
-        return float(SAFETY * difference / (2.0 ** min(max(self.rate, low), high) - 1.0))
+        rate = UNKNOWN_RATE if self.rate is None else min(max(self.rate, low), high)
+        return float(SAFETY * self.difference / (2.0**rate - 1.0))
