@@ -250,12 +250,15 @@ class Ascent:
         order = sorted(self.search.families, key=lambda f: (f.element == rung.family.element, f not in refined))
         half = replace(rung, divisions=tuple((max(x // 2, 1), max(y // 2, 1)) for x, y in rung.divisions))
         for family, mesh in product(order, (half, rung)):
-            if nearest <= agreed or (nearest < np.inf and family.element == rung.family.element):
+            if nearest <= max(agreed, 2 * part * self.search.tol):
+                break
+            if nearest < np.inf and family.element == rung.family.element:
                 break
             if family != rung.family:
                 pilot = self.search.run(replace(mesh, family=family), 6 * self._seconds(rung))
                 off = distance(pilot.values, lead.exact, scale) if pilot.ok else np.inf
-                if mesh == rung or off <= agreed:
+                # Half of what the coarse mesh is off may be bearable: then the fine one need not be run.
+                if mesh == rung or off <= max(agreed, 2 * part * self.search.tol):
                     nearest = min(nearest, off)
         if agreed < nearest < np.inf:
             lead.own = max(lead.own, nearest / 2)
