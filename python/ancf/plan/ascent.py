@@ -21,7 +21,7 @@ BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
 _CLEAR, _LITTLE = 0.1, 0.2
 """The same that is tried for while the next rung costs no more than this part of the plan so far."""
-_COARSE, _MUCH = 0.45, 0.5
+_COARSE, _MUCH = 0.35, 0.75
 """And that is enough where the next rung costs more than this part of it."""
 _HOPEFUL, _GROWTH = 4.0, 4.0
 """Seconds to the end of a climb, relative to the best, beyond which it takes cheap steps only; and growth of costs with

@@ -47,9 +47,8 @@ class Descent:
     worth: float
 
     def __post_init__(self) -> None:
-        """Set when it ends."""
-        spent = self.search.pilots.spent
-        self._end = min(spent + min(_DOWN * spent, _RUNS * self._limit()), self.worth)
+        """Note when it begins."""
+        self._begin = self.search.pilots.spent
 
     def down(self) -> None:
         """Run what promises the most: its chance to be good enough times what it saves in some runs, less its cost.
@@ -59,7 +58,9 @@ class Descent:
         """
         pilots = self.search.pilots
         for turn in count():
-            if pilots.left <= 0.0 or (pilots.spent >= self._end and (turn >= _FEW or pilots.spent >= self.worth)):
+            taken = pilots.spent - self._begin
+            over = taken >= min(_DOWN * self._begin, _RUNS * self._limit()) and turn >= _FEW
+            if over or pilots.left <= 0.0 or pilots.spent >= self.worth:
                 return
             trial = self._trial()
             if trial is None:
