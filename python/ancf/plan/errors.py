@@ -47,6 +47,16 @@ class Side:
     difference: float
     rate: float | None
 
+    def rate_to(self, after: float) -> float | None:
+        """Return the rate with which the difference shrinks to the next one; None if that cannot be told.
+
+        What is small by accident is left out: then the rate is the mean of two refinements.
+        """
+        if not 0 < self.difference < np.inf or not 0 < after < np.inf:
+            return None
+        rate = float(np.log2(self.difference / after))
+        return rate if self.rate is None or not self.sudden else 0.5 * (self.rate + rate)
+
     @property
     def sudden(self) -> bool:
         """Whether the difference shrank too fast to be believed."""

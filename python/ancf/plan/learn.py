@@ -43,7 +43,7 @@ def learn(search: Search, climb: Climb) -> None:
             old = before.get(side)
             rate = old.rate if old else None
             if old is not None and side in refined:
-                rate = _rate(old.difference, difference)
+                rate = old.rate_to(difference)
             climb.sides[side] = Side(difference, rate)
     else:
         coarse = search.values(last)
@@ -53,7 +53,7 @@ def learn(search: Search, climb: Climb) -> None:
         share = sum(expected.values())
         for side in refined:
             part = total * expected.get(side, 0.0) / share if share else total
-            climb.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
+            climb.sides[side] = Side(part, before[side].rate_to(part) if side in before else None)
     climb.rung, climb.exact, climb.refined = rung, values, last is not None
     # Nothing is known of a side along which no coarser rung reached its end.
     known = all(side in climb.sides for side in rung.sides())
@@ -109,9 +109,3 @@ def _agree(search: Search, climb: Climb, scale: Sequence[float]) -> None:
 def _count(rung: Rung, side: tuple[int, int]) -> int:
     body, axis = side
     return rung.divisions[body][axis]
-
-
-def _rate(before: float, after: float) -> float | None:
-    if not 0 < before < np.inf or not 0 < after < np.inf:
-        return None
-    return float(np.log2(before / after))
