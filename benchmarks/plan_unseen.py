@@ -186,7 +186,7 @@ def last_motions() -> Iterator[Case]:
     tap = ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, 30.0), history=[(0.0, 0.0), (4e-3, 1.0), (8e-3, 0.0)])
     yield Case(
         scene("tongue tapped", tongue, [WALL], [tap], (0.25, 0.05), ancf.Dynamic(until=0.03, step=2e-4), "velocity"),
-        ((12, 4), (20, 6)),
+        ((20, 6), (32, 8)),
         _X,
         _Y,
         Stepping("esdirk", step=0.03 / 300),

@@ -14,8 +14,8 @@ Values = Sequence[FloatArray]
 RATES = (0.5, 2.0)
 """Rates of convergence are taken to lie here: a lower one is no convergence, a higher one may be an accident."""
 UNKNOWN_RATE = 1.0
-_SLOWEST, _FASTEST = 1.0, 5.0
-"""Rates of steady convergence: differences that shrink faster are small by accident."""
+_SLOWEST, _FASTEST, _SUDDEN = 1.0, 3.0, 5.0
+"""Rates of steady convergence, and the one beyond which differences are small by accident."""
 SAFETY = 1.2
 
 
@@ -60,11 +60,11 @@ class Side:
     @property
     def sudden(self) -> bool:
         """Whether the difference shrank too fast to be believed."""
-        return self.rate is not None and self.rate > _FASTEST
+        return self.rate is not None and self.rate > _SUDDEN
 
     @property
     def steady(self) -> bool:
-        """Whether the difference shrank neither hardly nor suddenly, as far as is known."""
+        """Whether the difference shrank as it does where elements converge, as far as is known."""
         return self.rate is None or _SLOWEST <= self.rate <= _FASTEST
 
     @property
