@@ -5,7 +5,7 @@
 use pulp::Simd;
 
 use crate::lanes::{Lanes, Vector};
-use crate::strain::{Block, Curvature, Form, GreenLagrange, Measure, Metric};
+use crate::strain::{Block, Curvature, Form, GreenLagrange, Measure, Metric, SOLID_PAIRS};
 
 use super::constants::Couplings;
 use super::moments::Moments;
@@ -63,7 +63,8 @@ pub(super) struct Sample<S: Simd, const D: usize, const C: usize> {
 pub(crate) struct Totals<S: Simd, const N: usize> {
     /// Force on each vector.
     pub force: [Vector<S>; N],
-    /// Membrane and bending energy; that of a solid counts as the first.
+    /// Membrane and bending energy: of a solid that of strains which are odd across the thickness is the second, all else the
+    /// first.
     pub energy: [Lanes<S>; 2],
     /// Power of a unit viscosity, and the energy that mean forces miss.
     pub rates: [Lanes<S>; 2],
@@ -85,6 +86,12 @@ pub(crate) struct Tangent<S: Simd, const N: usize> {
 
 /// The most gradient vectors of a patch: two at 4 x 4 points, three for a solid.
 pub(super) const MOST_GRADIENTS: usize = 48;
+
+/// Number of strain components of a solid.
+const SOLID: usize = SOLID_PAIRS.len();
+
+/// Number of points in each of its two layers.
+const SOLID_LAYER: usize = 16;
 
 /// The most pairs of gradient vectors at the points of a patch, 135 for the curvature at 3 x 3 points, and the tangent of
 /// 16 vectors, 160 blocks.
@@ -147,7 +154,7 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
                     self.samples::<Curvature<S>, 5, 3>(samples, *law, own, 1, totals, tangent);
                 }
                 Group::Solid(samples) => {
-                    self.samples::<GreenLagrange<S>, 3, 6>(samples, (), own, 0, totals, tangent);
+                    self.samples::<GreenLagrange<S>, 3, SOLID>(samples, (), own, 0, totals, tangent);
                 }
             }
         }
@@ -164,10 +171,21 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
         totals: &mut Totals<S, N>,
         mut tangent: Option<&mut Tangent<S, N>>,
     ) {
+        let first = constants;
         let mut constants = constants.chunks_exact(point_constants(C));
-        for patch in &samples.patches {
+        // Strains of the first of a solid's two layers of points.
+        let mut below = if C == SOLID { Some([[first[0]; C]; SOLID_LAYER]) } else { None };
+        for (layer, patch) in samples.patches.iter().enumerate() {
             for (g, constants) in constants.by_ref().take(patch.points).enumerate() {
                 let sample = self.sample::<M, D, C>(patch, g, law, constants, tangent.is_some());
+                match &mut below {
+                    Some(below) if layer == 0 => below[g] = sample.strain,
+                    Some(below) => {
+                        let first = &first[g * constants.len()..][..constants.len()];
+                        totals.split(first, constants, difference(sample.strain, below[g]));
+                    }
+                    None => {}
+                }
                 let form = tangent.as_deref_mut().map(|tangent| Form::new(&mut tangent.forms, patch.points, g));
                 let force = self.point::<M, D, C>(&sample, law, constants, None, part, totals, form);
                 totals.on_gradients[g * D..(g + 1) * D].copy_from_slice(&force);
@@ -283,6 +301,20 @@ impl<S: Simd, const N: usize> Batch<'_, S, N> {
 }
 
 impl<S: Simd, const N: usize> Totals<S, N> {
+    /// Counts the energy of the part of a solid's strain that is odd across the thickness as bending: `twice` that part,
+    /// at two points on top of each other with the constants `below` and `above`.
+    #[inline(always)]
+    fn split<const C: usize>(&mut self, below: &[Lanes<S>], above: &[Lanes<S>], twice: [Lanes<S>; C]) {
+        let weights = (&below[1 + C..], &above[1 + C..]);
+        for i in 0..C {
+            for j in 0..C {
+                let energy = (weights.0[C * i + j] + weights.1[C * i + j]) * twice[j] * twice[i] * 0.125;
+                self.energy[0] = self.energy[0] - energy;
+                self.energy[1] = self.energy[1] + energy;
+            }
+        }
+    }
+
     /// Adds what strain rates do: `viscous` is their stress for a unit viscosity, `stress` the elastic one.
     #[inline(always)]
     pub fn add_rates(&mut self, stress: &[Lanes<S>], viscous: &[Lanes<S>], rate: &[Lanes<S>], missed: &[Lanes<S>]) {
