@@ -6,7 +6,6 @@ takes some seconds.
 
 from __future__ import annotations
 
-import argparse
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from page import put
+from page import print_or_write
 
 import ancf
 
@@ -199,15 +198,5 @@ def table() -> Iterator[str]:
             yield f"| {' | '.join(cells)} |"
 
 
-def main() -> None:
-    """Print the table, or write it into the page."""
-    parser = argparse.ArgumentParser(description="shells of linear theory against their published displacements")
-    parser.add_argument("--write", action="store_true", help="into docs/linear-shells.md")
-    if not parser.parse_args().write:
-        print(*table(), sep="\n")
-        return
-    put("linear-shells.md", "linear", table())
-
-
 if __name__ == "__main__":
-    main()
+    print_or_write("shells of linear theory against their published displacements", "linear-shells.md", linear=table())

@@ -6,12 +6,11 @@ some seconds.
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Callable, Iterator, Sequence
 from typing import Literal, TypeAlias
 
 import numpy as np
-from page import put
+from page import print_or_write
 from scipy.linalg import eigh
 
 import ancf
@@ -176,16 +175,5 @@ def table() -> Iterator[str]:
             yield f"| {name} | {mode} | {known:.5g} | {' | '.join(differences)} |"
 
 
-def main() -> None:
-    """Print the table, or write it into the page."""
-    parser = argparse.ArgumentParser(description="frequencies beside closed forms and published ones")
-    parser.add_argument("--write", action="store_true", help="into docs/modes.md")
-    if not parser.parse_args().write:
-        for line in table():
-            print(line, flush=True)
-        return
-    put("modes.md", "modes", table())
-
-
 if __name__ == "__main__":
-    main()
+    print_or_write("frequencies beside closed forms and published ones", "modes.md", modes=table())

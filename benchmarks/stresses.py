@@ -6,7 +6,6 @@ takes some seconds.
 
 from __future__ import annotations
 
-import argparse
 import tomllib
 from collections.abc import Callable, Iterator
 from functools import cache
@@ -15,7 +14,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from page import put
+from page import print_or_write
 
 import ancf
 
@@ -159,17 +158,10 @@ def places() -> Iterator[str]:
         yield f"| roll-up, 12 x 1: M | `{element}` | {' | '.join(f'{error:.2%}' for error in errors)} |"
 
 
-def main() -> None:
-    """Print the tables, or write them into the page."""
-    parser = argparse.ArgumentParser(description="moments and shear forces of plates against their series")
-    parser.add_argument("--write", action="store_true", help="into docs/stresses.md")
-    write = parser.parse_args().write
-    for mark, lines in (("convergence", convergence()), ("places", places())):
-        if write:
-            put("stresses.md", mark, lines)
-        else:
-            print(*lines, sep="\n", end="\n\n")
-
-
 if __name__ == "__main__":
-    main()
+    print_or_write(
+        "moments and shear forces of plates against their series",
+        "stresses.md",
+        convergence=convergence(),
+        places=places(),
+    )

@@ -10,6 +10,7 @@ import pytest
 
 import ancf
 
+STEEL = ancf.Material(E=2.1e11, nu=0.3)
 EVERYTHING = """
 title = "Two bodies"
 [material.steel]
@@ -124,3 +125,26 @@ def test_errors_with_results_go_to_other_processes(pendulum: ancf.Model) -> None
     again = pickle.loads(pickle.dumps(caught.value))
     assert str(again) == str(caught.value)
     np.testing.assert_array_equal(again.result.q, caught.value.result.q)
+
+
+def test_a_name_is_that_of_one_material() -> None:
+    foil = ancf.Material(E=7e10, nu=0.33)
+    plates = {
+        name: ancf.Rectangle(size=(1.0, 1.0), divisions=(1, 1), thickness=0.1, material=material)
+        for name, material in (("a", STEEL), ("b", foil))
+    }
+    model = ancf.Model(bodies=plates)
+    with pytest.raises(ancf.InputError, match=r'material_names\.b = "metal": is the name of another material'):
+        ancf.Scene("", model, ancf.Modes(), {"a": "metal", "b": "metal"})
+    with pytest.raises(ancf.InputError, match=r'material_names\.b = "b": is the name of another material'):
+        ancf.Scene("", model, ancf.Modes(), {"a": "b"})
+    with pytest.raises(ancf.InputError, match=r'material_names = "c": allowed are a, b'):
+        ancf.Scene("", model, ancf.Modes(), {"c": "metal"})
+
+
+def test_a_scene_is_itself_again(tmp_path: Path) -> None:
+    plate = ancf.Rectangle(size=(1.0, 1.0), divisions=(1, 1), thickness=0.1, material=STEEL)
+    wall = ancf.Support(at="edge:x0", clamp=True)
+    scene = ancf.Scene("Plate", ancf.Model(bodies={"plate": plate}, supports=[wall]), ancf.Static())
+    scene.write(tmp_path / "scene.toml")
+    assert ancf.load_scene(tmp_path / "scene.toml") == scene

@@ -82,7 +82,7 @@ def test_wrong_runs(pendulum: ancf.Model) -> None:
         ancf.simulate(pendulum, until=0.1, step=0.01, threads=0)
     with pytest.raises(ancf.InputError, match="progress = 3: must be"):
         ancf.simulate(pendulum, until=0.1, step=0.01, progress=3)  # type: ignore[arg-type]
-    with pytest.raises(ancf.InputError, match=r"velocity = \[3\]: must be finite and have the shape \[81\]"):
+    with pytest.raises(ancf.InputError, match=r"velocity: must have the shape \(81,\), not \(3,\)"):
         ancf.simulate(pendulum, until=0.1, step=0.01, velocity=np.zeros(3))
     with pytest.raises(ancf.InputError, match=r"step = 1\.0: must not be greater than until"):
         ancf.simulate(pendulum, until=0.1, step=1.0)
@@ -112,10 +112,64 @@ def test_wrong_questions(pendulum: ancf.Model) -> None:
         result.positions("plat", [(0.0, 0.0)])
     with pytest.raises(ancf.InputError, match='quantity = "speed": allowed are position'):
         result.evaluate("plate", [(0.0, 0.0)], "speed")  # type: ignore[arg-type]
-    with pytest.raises(ancf.InputError, match=r"points = \[2\]: must have the shape \(points, 2\)"):
+    with pytest.raises(ancf.InputError, match=r"points: must have the shape \(points, 2\), not \(2,\)"):
         result.positions("plate", (0.0, 0.0))
     with pytest.raises(ancf.InputError, match=r"points.*0\.4"):
         result.positions("plate", [(0.4, 0.0)])
+    with pytest.raises(ancf.InputError, match=r"points = \[\[0, 0\], \[1\]\]: must be an array of numbers"):
+        result.positions("plate", [(0, 0), (1,)])
+    with pytest.raises(ancf.InputError, match=r"q: must have the shape \(states, 81\), not \(81,\)"):
+        pendulum.evaluate("plate", [(0.0, 0.0)], "position", result.q[0])
+    with pytest.raises(ancf.InputError, match=r"v: must have the shape \(3, 81\), not \(2, 81\)"):
+        pendulum.evaluate("plate", [(0.0, 0.0)], "velocity", result.q, result.v[:2])
+    with pytest.raises(ancf.InputError, match=r'body = "plat": allowed is plate$'):
+        pendulum.domain("plat")
+
+
+def test_states_may_be_arrays_of_any_kind(pendulum: ancf.Model) -> None:
+    q = np.round(pendulum.nodal_coordinates() * 1024).reshape(1, -1)
+    expected = pendulum.evaluate("plate", [(0.3, 0.3)], "position", q)
+    for same in (q.astype(int), q.astype(np.float32), q.tolist(), np.repeat(q, 2, axis=1)[:, ::2]):
+        np.testing.assert_array_equal(pendulum.evaluate("plate", [(0.3, 0.3)], "position", same), expected)
+    still = ancf.simulate(pendulum, until=0.01, step=5e-3, velocity=[0] * 81, threads=np.int64(1))  # type: ignore[arg-type]
+    np.testing.assert_array_equal(still.q, ancf.simulate(pendulum, until=0.01, step=5e-3).q)
+
+
+def test_what_is_optional_may_be_none(pendulum: ancf.Model) -> None:
+    support = ancf.Support(at="edge:x0", clamp=True, translation=None, shake=None, rotation=None, symmetry=None)
+    assert support == ancf.Support(at="edge:x0", clamp=True)
+    assert ancf.Gravity(acceleration=(0.0, 0.0, -9.81), history=None) == pendulum.loads[0]
+
+
+def test_results_are_compared_by_identity(pendulum: ancf.Model) -> None:
+    result, other = (ancf.simulate(pendulum, until=0.01, step=5e-3) for _ in range(2))
+    assert result == result  # noqa: PLR0124
+    assert result != other
+    assert result.energy != other.energy
+
+
+def test_a_changed_copy_is_checked_and_made_anew(pendulum: ancf.Model) -> None:
+    finer = pendulum.model_copy(
+        update={"bodies": {"plate": pendulum.bodies["plate"].model_copy(update={"divisions": (3, 2)})}}
+    )
+    assert (finer.elements, len(finer.nodal_coordinates())) == (6, 9 * 12)
+    with pytest.raises(ancf.InputError, match=r"thickness = 0: must be greater than 0"):
+        pendulum.bodies["plate"].model_copy(update={"thickness": 0})
+
+
+def test_a_long_narrow_strip_is_held_at_its_ends(rubber: ancf.Material) -> None:
+    strip = ancf.Rectangle(size=(10.0, 1e-3), divisions=(4, 1), thickness=1e-4, material=rubber)
+    ends = [ancf.Support(at=edge, fix=["r"]) for edge in ("edge:x0", "edge:x1")]
+    assert ancf.Model(bodies={"strip": strip}, supports=ends).rigid_motions() == []
+    hinge = [ancf.Support(at=corner, fix=["r"]) for corner in ("corner:x0y0", "corner:x1y0")]
+    assert ancf.Model(bodies={"strip": strip}, supports=hinge).rigid_motions() == [("strip", "rotation about x")]
+
+
+def test_outputs_beyond_the_end_by_rounding_are_at_the_end(pendulum: ancf.Model) -> None:
+    result = ancf.simulate(pendulum, until=0.3, step=0.1, outputs=[n * 0.1 for n in (1, 2, 3)])
+    assert result.t.tolist() == [0.0, 0.1, 0.2, 0.3]
+    with pytest.raises(ancf.InputError, match=r"outputs = \[0\.3001\]: must increase and lie in \[0, 0\.3\]"):
+        ancf.simulate(pendulum, until=0.3, step=0.1, outputs=[0.3001])
 
 
 def test_a_free_plate_keeps_its_velocity(rubber: ancf.Material) -> None:

@@ -110,7 +110,7 @@ def test_mistakes() -> None:
     model = hinged(1.0)
     with pytest.raises(ancf.InputError, match=r"count = 1000: must not be greater than"):
         ancf.modes(model, count=1000)
-    with pytest.raises(ancf.InputError, match=r"q = .*: must be finite and have the shape"):
+    with pytest.raises(ancf.InputError, match=r"q: must have the shape \(\d+,\), not"):
         ancf.modes(model, q=[1.0])
     light = ancf.Rectangle(size=(1, 1), divisions=(1, 1), thickness=0.1, material=ancf.Material(E=1.0, nu=0.0))
     with pytest.raises(ancf.InputError, match=r"density = 0\.0: must be greater than 0"):

@@ -45,6 +45,16 @@ def test_the_scene_in_the_documentation_runs(tmp_path: Path) -> None:
     assert main(["run", str(path), "-o", str(tmp_path / "out"), "--quiet"]) == 0
 
 
+def test_the_cantilever_of_newcomers_bends_as_the_page_says(tmp_path: Path) -> None:
+    page = (ROOT / "docs" / "coming-from.md").read_text(encoding="utf-8")
+    theirs, ours = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+    assert "import exudyn" in theirs
+    done = subprocess.run([sys.executable, "-c", ours], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    (deflection,) = re.findall(r"Both bend by ([0-9.]+) m", page)
+    assert float(done.stdout.strip("[] \n").split()[2]) == pytest.approx(-float(deflection), abs=1e-5)
+
+
 def test_every_link_leads_somewhere() -> None:
     for path in [*ROOT.glob("*.md"), *ROOT.glob("benchmarks/*.md"), *ROOT.glob("docs/**/*.md")]:
         for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", path.read_text(encoding="utf-8")):

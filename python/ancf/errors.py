@@ -34,6 +34,8 @@ def show(value: object) -> str:
 def one_of(allowed: Iterable[str], given: object = None) -> str:
     """Say what is allowed, and which of it is nearest to what was given."""
     names = list(allowed)
+    if not names:
+        return "there is none"
     near = get_close_matches(given, names, n=1) if isinstance(given, str) and len(names) > 1 else []
     hint = f"; did you mean {near[0]}?" if near else ""
     return f"{'allowed are' if len(names) > 1 else 'allowed is'} {', '.join(names)}{hint}"
@@ -112,9 +114,11 @@ class Mistakes:
 
 @contextmanager
 def from_core(*path: str | int) -> Iterator[None]:
-    """Turn an error of the compiled module into `InputError`, its argument under `path`."""
+    """Turn an error of the compiled module into `InputError`, its argument under `path`; so are other `InputError`s."""
     try:
         yield
+    except InputError as error:
+        raise error.under(*path) from None
     except _core.InputError as error:
         raise InputError(Mistake((*path, error.argument), f"allowed is {error.allowed}", error.value)) from None
 

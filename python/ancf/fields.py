@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ancf.errors import InputError, Mistake, one_of, show
+from ancf.inputs import whole
 from ancf.modal import ModalResult
 from ancf.model import Model
 from ancf.output import replacing
@@ -121,8 +122,8 @@ class _Surface:
     """
 
     def __init__(self, model: Model, subdivisions: int | None) -> None:
-        if subdivisions is not None and (not isinstance(subdivisions, int) or not 1 <= subdivisions <= 100):
-            raise InputError(Mistake(("subdivisions",), "must be a whole number from 1 to 100", show(subdivisions)))
+        if subdivisions is not None:
+            whole("subdivisions", subdivisions, 1, 100)
         self._model = model
         self._grids = [
             Grid.of(model, body, _FACETS) if subdivisions is None else Grid.divided(model, body, subdivisions)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Annotated, Any, Self
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
@@ -13,6 +14,7 @@ from ancf.errors import InputError, Mistake, one_of, show
 
 _WORDS = {
     "Input should": "must",
+    "String should": "must",
     "a valid integer": "a whole number",
     "a valid dictionary": "a table",
     "a valid mapping": "a table",
@@ -40,6 +42,10 @@ class Input(BaseModel):
             super().__init__(**{name: _plain(value) for name, value in values.items()})
         except ValidationError as error:
             raise InputError(*_mistakes(error, type(self))) from None
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return the same input with some values replaced, and checked as any other."""
+        return type(self)(**dict(self) | dict(update or {}))
 
     def document(self) -> dict[str, Any]:
         """Return what makes the same input, in the words of scene files, without what is as by default."""
@@ -145,7 +151,7 @@ def table(*classes: type[Input], key: str | None = None) -> Callable[[Any], Inpu
         if isinstance(value, classes):
             return value
         if not isinstance(value, dict):
-            raise ValueError(f"must be a table (in Python: {names})")
+            raise InputError(Mistake((), f"must be a table (in Python: {names})", show(value)))
         if key is None:
             return classes[0](**value)
         tags = {getattr(cls, key): cls for cls in classes}
@@ -157,6 +163,49 @@ def table(*classes: type[Input], key: str | None = None) -> Callable[[Any], Inpu
         return tags[tag](**{name: item for name, item in value.items() if name != key})
 
     return make
+
+
+def whole(name: str, value: object, least: int, most: int) -> int:
+    """Return an argument if it is a whole number from `least` to `most`, or raise `InputError`."""
+    if not isinstance(value, (int, np.integer)) or isinstance(value, bool) or not least <= value <= most:
+        raise InputError(Mistake((name,), f"must be a whole number from {least} to {most}", show(value)))
+    return int(value)
+
+
+def numbers(name: str, values: ArrayLike, *shape: int | str, finite: bool = True) -> NDArray[np.float64]:
+    """Take an argument as an array.
+
+    Parameters
+    ----------
+    name : str
+        What the argument is called.
+    values : array_like
+        Numbers of any type, in any order in the memory.
+    *shape : int or str
+        The length along each axis; where any will do, what is counted there.
+    finite : bool, default True
+        Whether all must be finite.
+
+    Returns
+    -------
+    ndarray
+        Contiguous.
+
+    Raises
+    ------
+    InputError
+        If it has another shape, or there is something in it that is no (finite) number.
+    """
+    wanted = f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
+    try:
+        array = np.asarray(values, dtype=np.float64, order="C")
+    except (TypeError, ValueError):
+        raise InputError(Mistake((name,), f"must be an array of numbers of the shape {wanted}", show(values))) from None
+    if array.ndim != len(shape) or any(n != m for n, m in zip(array.shape, shape, strict=True) if isinstance(m, int)):
+        raise InputError(Mistake((name,), f"must have the shape {wanted}, not {array.shape}"))
+    if finite and not np.isfinite(array).all():
+        raise InputError(Mistake((name,), "must hold finite numbers only"))
+    return array
 
 
 def _count(number: int) -> BeforeValidator:

@@ -42,7 +42,7 @@ History: TypeAlias = Literal["constant", "ramp"] | Sequence[tuple[float, float]]
 class _Load(Input, ABC):
     kind: ClassVar[str]
 
-    history: Annotated[History | None, PlainValidator(_check_history)] = None
+    history: Annotated[History, PlainValidator(_check_history)] | None = None
 
     @abstractmethod
     def add(self, core: _core.Model, history: History) -> None:

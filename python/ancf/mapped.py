@@ -84,7 +84,11 @@ class Surface(Plate):
             if len(given) != 3:
                 raise InputError(Mistake(("derivatives",), "must return r_x, r_y and r_xy"))
             vectors = [r, *(_components(vector, x, "derivatives") for vector in given)]
-        return _core.Shape.nodes(self.domain, self.divisions, np.concatenate(vectors, axis=1))
+        try:
+            return _core.Shape.nodes(self.domain, self.divisions, np.concatenate(vectors, axis=1))
+        except _core.InputError as error:
+            problem = f"{error.value}: must give {error.allowed}"
+            raise InputError(Mistake(("position" if self.derivatives is None else "derivatives",), problem)) from None
 
     def _differences(self, x: FloatArray, y: FloatArray) -> list[FloatArray]:
         """Return r_x, r_y, r_xy, each (points, 3), from positions at 7 x 7 points about each point."""

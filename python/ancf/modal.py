@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ancf import _core
-from ancf.errors import InputError, Interrupted, Mistake, SolveError, from_core, show
+from ancf.errors import Interrupted, SolveError, from_core
+from ancf.inputs import numbers, whole
 from ancf.model import Model
 from ancf.progress import Progress, meter
 from ancf.result import Result, Status
@@ -26,7 +27,7 @@ FloatArray = NDArray[np.float64]
 _AMPLITUDE = 0.1
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ModalResult:
     """Small oscillations about a state: frequencies in increasing order, and shapes.
 
@@ -69,8 +70,18 @@ class ModalResult:
 
     @property
     def states(self) -> int:
-        """How many modes there are."""
+        """How many modes there are, as `reached`."""
         return len(self.frequency)
+
+    @property
+    def reached(self) -> int:
+        """How many modes were found."""
+        return len(self.frequency)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is doubtful about the modes: nothing, they are proved complete or the run fails."""
+        return ()
 
     @property
     def unstable(self) -> int:
@@ -119,12 +130,11 @@ class ModalResult:
         InputError
             If there is no such mode.
         """
-        if not 0 <= mode < len(self.frequency):
-            raise InputError(Mistake(("mode",), f"must be from 0 to {len(self.frequency) - 1}", show(mode)))
+        whole("mode", mode, 0, len(self.frequency) - 1)
         places = self._nodes(self.q)
         size = np.linalg.norm(np.ptp(places, axis=0))
         scale = _AMPLITUDE * size / np.linalg.norm(self._nodes(self.shapes[mode]), axis=-1).max()
-        waves = np.sin(np.asarray(phases, dtype=np.float64))
+        waves = np.sin(numbers("phases", phases, "states"))
         states: FloatArray = self.q + scale * np.outer(waves, self.shapes[mode])
         return states
 
@@ -270,7 +280,8 @@ def find_modes(
     check_threads(threads)
     run.check(model)
     core = model.assemble(run.history)
-    state = model.nodal_coordinates() if q is None else _check_state(model, q)
+    rest = model.nodal_coordinates()
+    state = rest if q is None else numbers("q", q, len(rest))
     before = None
     if q is None and run.load_factor != 0:
         before = _load(model, run, threads, progress, throw)
@@ -334,11 +345,3 @@ def _without_modes(run: Modes, before: Result) -> ModalResult:
         counts=before.counts,
         seconds=before.seconds,
     )
-
-
-def _check_state(model: Model, q: ArrayLike) -> FloatArray:
-    values = np.ascontiguousarray(q, dtype=np.float64)
-    shape = model.nodal_coordinates().shape
-    if values.shape != shape or not np.isfinite(values).all():
-        raise InputError(Mistake(("q",), f"must be finite and have the shape {show(shape)}", show(values.shape)))
-    return values

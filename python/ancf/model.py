@@ -13,7 +13,7 @@ from pydantic import PlainValidator, PrivateAttr, ValidationInfo, field_validato
 from ancf import _core
 from ancf.bodies import SHAPES, Plate
 from ancf.errors import InputError, Mistake, Mistakes, from_core, one_of, show
-from ancf.inputs import Input, OnBody, table
+from ancf.inputs import Input, OnBody, numbers, table
 from ancf.loads import History, Load
 from ancf.mapped import Surface
 from ancf.places import Domain
@@ -148,7 +148,8 @@ class Model(Input):
         return self._assembled.rigid_motions()
 
     def domain(self, body: str) -> Domain:
-        """Return the ranges of the natural coordinates x and y of a body."""
+        """Return the ranges of the natural coordinates x and y of a body, or raise `InputError` if there is none."""
+        self._check_body(body)
         return self._assembled.domain(body)
 
     def nodes(self, body: str) -> NDArray[np.float64]:
@@ -213,8 +214,8 @@ class Model(Input):
         body: str,
         points: ArrayLike,
         quantity: Quantity,
-        q: NDArray[np.float64],
-        v: NDArray[np.float64] | None = None,
+        q: ArrayLike,
+        v: ArrayLike | None = None,
     ) -> NDArray[np.float64]:
         """Return a quantity at material points for given nodal coordinates.
 
@@ -226,9 +227,9 @@ class Model(Input):
             Natural coordinates.
         quantity : str
             One of those of `Probe`.
-        q : ndarray, shape (states, n)
+        q : array_like, shape (states, n)
             Nodal coordinates.
-        v : ndarray, shape (states, n), optional
+        v : array_like, shape (states, n), optional
             Their velocities, needed for "velocity".
 
         Returns
@@ -239,21 +240,22 @@ class Model(Input):
         Raises
         ------
         InputError
-            If there is no such body or quantity, or a point is outside.
+            If there is no such body or quantity, a point is outside, or an array has another shape.
         """
         mistakes = Mistakes()
         with mistakes.gather():
             self._check_body(body)
         if quantity not in QUANTITIES:
             mistakes.add(("quantity",), one_of(QUANTITIES, quantity), quantity)
-        places = np.asarray(points, dtype=np.float64)
-        if places.ndim != 2 or places.shape[1] != 2:
-            mistakes.add(("points",), "must have the shape (points, 2)", places.shape)
         if quantity == "velocity" and v is None:
             mistakes.add(("v",), "is needed for velocity")
         mistakes.check()
+        places = numbers("points", points, "points", 2, finite=False)
+        # States of a motion that went wrong may not be finite.
+        states = numbers("q", q, "states", self._assembled.coordinates, finite=False)
+        rates = None if v is None else numbers("v", v, *states.shape, finite=False)
         try:
-            return self._assembled.evaluate(body, places, quantity, q, v)
+            return self._assembled.evaluate(body, places, quantity, states, rates)
         except _core.InputError as error:
             raise InputError(Mistake(("points",), f"allowed is {error.allowed}", error.value)) from None
 

@@ -151,10 +151,10 @@ def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
     summary: dict[str, Any] = {
         "title": title,
         "status": result.status,
-        "reached": len(result.frequency) if isinstance(result, ModalResult) else _plain(result.reached),
+        "reached": _plain(result.reached),
         "reason": result.reason,
         "advice": result.advice,
-        "warnings": [] if isinstance(result, ModalResult) else list(result.warnings),
+        "warnings": list(result.warnings),
         "counts": _plain(result.counts),
         "seconds": _plain(result.seconds),
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from typing import Annotated, Any, TypeAlias
 
 import numpy as np
@@ -21,7 +21,7 @@ POINT = "[x, y]"
 
 def is_number(value: object) -> bool:
     """Tell whether `value` is a finite number."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def _place(*allowed: str) -> PlainValidator:

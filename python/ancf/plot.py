@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from ancf.errors import InputError, Mistake
+from ancf.inputs import whole
 from ancf.modal import ModalResult
 from ancf.probes import QUANTITIES, Probe, Quantity
 from ancf.result import Result
@@ -57,9 +58,9 @@ def plot_modes(result: ModalResult, title: str = "", count: int = 6) -> Figure:
 
 
 def _plot_modes(result: ModalResult, title: str, count: int) -> Figure:
-    shown = result.visible()[:count]
-    if not shown:
+    if not result.states:
         raise InputError(Mistake(("result",), "must hold at least one mode to be drawn"))
+    shown = result.visible()[: whole("count", count, 1, 1000)]
     columns = min(3, len(shown))
     rows = -(-len(shown) // columns)
     figure = Figure(figsize=(4.2 * columns, 3.6 * rows + 0.6), dpi=130, layout="constrained")

@@ -28,7 +28,7 @@ _RESTS = 1e-9
 """Changes of nodal coordinates, relative to their range, that are none: strains of them square to rounding."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Record:
     """What a probe recorded.
 
@@ -44,7 +44,7 @@ class Record:
     value: FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Energy:
     """Energies.
 
@@ -68,7 +68,7 @@ class Energy:
     dissipated: FloatArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Result:
     """What a run leaves: every state up to its end, and how it ended.
 

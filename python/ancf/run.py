@@ -22,6 +22,7 @@ from ancf.model import Model
 _INTERVALS = 100
 _MOST_OUTPUTS = 1_000_000
 _MOST_STEPS = 10**12
+_ROUNDING = 1e-12
 
 Method: TypeAlias = Literal[
     "hht", "generalized_alpha", "newmark", "tr_bdf2", "esdirk", "energy_momentum", "verlet", "rk", "rigid"
@@ -234,8 +235,9 @@ class Dynamic(_Run):
         if self.every is not None and self.until / self.every > _MOST_OUTPUTS:
             mistakes.add(("every",), f"must be at least until / {_MOST_OUTPUTS}", self.every)
         if self.outputs is not None:
-            increase = all(before < after for before, after in pairwise(self.outputs))
-            if not increase or not all(0 <= time <= self.until for time in self.outputs):
+            times = self._outputs()
+            increase = all(before < after for before, after in pairwise(times))
+            if not increase or not all(0 <= time <= self.until for time in times):
                 mistakes.add(("outputs",), f"must increase and lie in [0, {self.until}]", self.outputs)
         mistakes.check()
         return self
@@ -248,13 +250,17 @@ class Dynamic(_Run):
     def times(self) -> list[float]:
         """Return the times of the states to record, the first 0, s."""
         if self.outputs is not None:
-            return [0.0, *(time for time in self.outputs if time > 0)]
+            return [0.0, *(time for time in self._outputs() if time > 0)]
         if self.every is None:
             steps = _INTERVALS if self.step is None else round(self.until / self.step)
             intervals = max(1, min(_INTERVALS, steps))
             return [self.until * (index / intervals) for index in range(intervals + 1)]
         whole = int(self.until / self.every * (1 - 1e-12))
         return [*(self.every * index for index in range(whole + 1)), self.until]
+
+    def _outputs(self) -> list[float]:
+        """Return `outputs`, what is beyond the end by rounding only, as 3 * 0.1 beyond 0.3, put there."""
+        return [self.until if self.until < time < self.until * (1 + _ROUNDING) else time for time in self.outputs or ()]
 
     def _steps(self) -> tuple[float, bool] | tuple[float, float, float | None, float | None, float]:
         if self.step is not None:

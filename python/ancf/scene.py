@@ -48,12 +48,31 @@ class Scene:
         How to run it.
     material_names : mapping of str to str, optional
         What the material of each body is called; like the body if left out.
+
+    Raises
+    ------
+    InputError
+        If a name is that of two materials, or of the material of a body that does not exist.
     """
 
     title: str
     model: Model
     run: Static | Dynamic | Modes
     material_names: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        bodies = self.model.bodies
+        mistakes = Mistakes()
+        for body in self.material_names:
+            if body not in bodies:
+                mistakes.add(("material_names",), one_of(bodies, body), body)
+        names = {body: self.material_names.get(body, body) for body in bodies}
+        materials: dict[str, Material] = {}
+        for body, name in names.items():
+            if materials.setdefault(name, bodies[body].material) != bodies[body].material:
+                mistakes.add(("material_names", body), "is the name of another material", name)
+        mistakes.check()
+        object.__setattr__(self, "material_names", names)
 
     @classmethod
     def of(cls, document: Mapping[str, Any]) -> Scene:
@@ -97,7 +116,7 @@ class Scene:
         bodies, materials = {}, {}
         mistakes = Mistakes()
         for name, body in self.model.bodies.items():
-            material = self.material_names.get(name, name)
+            material = self.material_names[name]
             materials[material] = body.material.document()
             with mistakes.gather("body", name):
                 bodies[name] = body.document() | {"material": material}
@@ -159,7 +178,8 @@ class Scene:
         if isinstance(self.run, Dynamic):
             start = partial(self.run.start, checkpoint=checkpoint, resume=resume)
         elif checkpoint is not None or resume is not None:
-            raise InputError(Mistake(("checkpoint",), "is for motion only"))
+            given = "checkpoint" if resume is None else "resume"
+            raise InputError(Mistake((given,), "is for motion only"))
         with _scene_paths({}):
             if isinstance(self.run, Modes):
                 return find_modes(self.model, self.run, threads=threads, progress=progress, throw=throw)

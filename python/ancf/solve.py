@@ -6,14 +6,14 @@ import os
 import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, Literal
+from typing import Literal
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from ancf import _core
 from ancf.balance import EnergyWarning
-from ancf.errors import InputError, Interrupted, Mistake, SolveError, from_core, show
+from ancf.errors import Interrupted, SolveError, from_core
+from ancf.inputs import numbers, whole
 from ancf.model import Model
 from ancf.progress import Progress, meter
 from ancf.result import Result
@@ -168,7 +168,7 @@ newton, tolerance, max_iterations, reuse : optional
         max_iterations=max_iterations,
         reuse=reuse,
     )
-    given_velocity = None if velocity is None else _check_velocity(model, velocity)
+    given_velocity = None if velocity is None else numbers("velocity", velocity, len(model.nodal_coordinates()))
     start = partial(run.start, velocity=given_velocity, checkpoint=checkpoint, resume=resume)
     return solve(model, run, threads=threads, progress=progress, throw=throw, start=start)
 
@@ -203,8 +203,8 @@ def solve(
 
 def check_threads(threads: int | None) -> None:
     """Raise `InputError` unless `threads` is a possible number of them."""
-    if threads is not None and (not isinstance(threads, int) or isinstance(threads, bool) or not 1 <= threads <= 1024):
-        raise InputError(Mistake(("threads",), "must be a whole number from 1 to 1024", show(threads)))
+    if threads is not None:
+        whole("threads", threads, 1, 1024)
 
 
 def _stopped(cause: BaseException, place: str, result: Result) -> BaseException:
@@ -215,11 +215,3 @@ def _stopped(cause: BaseException, place: str, result: Result) -> BaseException:
     cause.add_note(f"It stopped the run at {place}; the attribute `result` holds the states up to there.")
     cause.__dict__["result"] = result
     return cause
-
-
-def _check_velocity(model: Model, velocity: ArrayLike) -> Any:
-    values = np.asarray(velocity, dtype=np.float64)
-    shape = model.nodal_coordinates().shape
-    if values.shape != shape or not np.isfinite(values).all():
-        raise InputError(Mistake(("velocity",), f"must be finite and have the shape {show(shape)}", show(values.shape)))
-    return values

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal, Self, TypeAlias
+from itertools import pairwise
+from typing import Annotated, Literal, Self, TypeAlias, TypeVar
 
 import numpy as np
-from pydantic import PlainValidator, model_validator
+from pydantic import AfterValidator, PlainValidator, field_validator, model_validator
 
 from ancf import _core
 from ancf.bodies import NODAL_VECTORS
@@ -15,9 +16,16 @@ from ancf.inputs import Input, OnBody, Positive, Vector, table
 from ancf.places import EDGES, Anywhere
 
 Axis: TypeAlias = Literal["x", "y", "z"]
+Rows = TypeVar("Rows", bound=Sequence[Sequence[float]])
 
 _FLAT = 1e-6
 """How far, relative to its size, a surface may be from its plane of symmetry: derivatives of maps are differences."""
+
+
+def _check_rows(rows: Rows) -> Rows:
+    if len(rows) < 2 or any(after[0] <= before[0] for before, after in pairwise(rows)):
+        raise ValueError("must be at least two rows, their t increasing")
+    return rows
 
 
 class Shake(Input):
@@ -51,7 +59,14 @@ class Rotation(Input):
 
     axis: Vector
     point: Vector = (0.0, 0.0, 0.0)
-    angle: Sequence[tuple[float, float]]
+    angle: Annotated[Sequence[tuple[float, float]], AfterValidator(_check_rows)]
+
+    @field_validator("axis")
+    @classmethod
+    def _check_axis(cls, axis: tuple[float, float, float]) -> tuple[float, float, float]:
+        if not any(axis):
+            raise ValueError("must have a direction")
+        return axis
 
 
 class Support(OnBody):
@@ -96,9 +111,9 @@ class Support(OnBody):
     fix: Sequence[str] = ()
     clamp: bool = False
     symmetry: Axis | None = None
-    translation: Sequence[tuple[float, float, float, float]] | None = None
-    shake: Annotated[Shake | None, PlainValidator(table(Shake))] = None
-    rotation: Annotated[Rotation | None, PlainValidator(table(Rotation))] = None
+    translation: Annotated[Sequence[tuple[float, float, float, float]], AfterValidator(_check_rows)] | None = None
+    shake: Annotated[Shake, PlainValidator(table(Shake))] | None = None
+    rotation: Annotated[Rotation, PlainValidator(table(Rotation))] | None = None
 
     @model_validator(mode="after")
     def _one_way(self) -> Self:

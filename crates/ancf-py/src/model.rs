@@ -179,14 +179,14 @@ impl Model {
         for (axis, direction) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
             if let Some(rows) = &translation {
                 let rows = rows.iter().map(|row| [row[0], row[axis + 1]]).collect();
-                motion.translation.push((direction, checked(py, Course::table(rows))?));
+                motion.translation.push((direction, checked(py, Course::table("translation", rows))?));
             }
         }
         if let Some((amplitude, frequency)) = shake {
             motion.translation.push((amplitude, Course::Sine { amplitude: 1.0, frequency }));
         }
         if let Some((point, axis, angle)) = rotation {
-            motion.rotation = Some((point, axis, checked(py, Course::table(angle))?));
+            motion.rotation = Some((point, axis, checked(py, Course::table("rotation.angle", angle))?));
         }
         checked(py, self.edit().move_support(id, place, &fixes, motion))
     }

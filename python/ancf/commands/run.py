@@ -84,9 +84,8 @@ def call(options: argparse.Namespace) -> int:
         _write_extras(options, scene.title, result, film)
     if not options.quiet:
         print(describe(scene.title, result))
-    if isinstance(result, Result):
-        for doubt in result.warnings:
-            complain(f"warning: {doubt}", OK)
+    for doubt in result.warnings:
+        complain(f"warning: {doubt}", OK)
     if result.status == "failed":
         return complain(f"the run failed: {result.reason}\ntry: {result.advice}", FAILED)
     return OK if planned is None else promise(planned, folder)

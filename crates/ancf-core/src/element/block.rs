@@ -148,9 +148,12 @@ fn couplings<const N: usize>(tables: &Tables<N>, classes: &[Constants]) -> Coupl
             let mut coupled = vec![false; modes * (modes + 1) / 2];
             for class in classes {
                 let matrix = &class.values[start..start + coupled.len()];
-                let largest = (0..modes).map(|k| matrix[packed(k, k)]).fold(0.0, f64::max);
-                for (coupled, value) in coupled.iter_mut().zip(matrix) {
-                    *coupled |= value.abs() > 1e-15 * largest;
+                // Compared with the diagonals of both strains: the units of x and y do not count.
+                for l in 0..modes {
+                    for k in 0..=l {
+                        let scale = (matrix[packed(k, k)] * matrix[packed(l, l)]).sqrt();
+                        coupled[packed(k, l)] |= matrix[packed(k, l)].abs() > 1e-15 * scale;
+                    }
                 }
             }
             let position = |k: usize, l: usize| packed(k.min(l), k.max(l));

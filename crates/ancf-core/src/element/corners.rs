@@ -5,6 +5,7 @@
 //! often: at the sample points, two of three table entries of `thin36` are zero. Forces and tangents made with these
 //! functions return to the nodal vectors with a few additions.
 
+use std::array;
 use std::ops::{Add, Sub};
 
 /// What can be added and subtracted.
@@ -62,11 +63,15 @@ pub(crate) fn distribute_all<T: Number, const M: usize, const N: usize>(combined
 }
 
 /// The shape functions that belong to sum and differences, from those of the corners; rounding left of what is zero by
-/// symmetry is removed.
-pub(crate) fn functions<const N: usize>(row: &[f64; N]) -> [f64; N] {
-    let largest = row.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+/// symmetry is removed. `units` has that of each kind of function: sides of the element, for those of gradients.
+pub(crate) fn functions<const N: usize>(row: &[f64; N], units: &[f64; 4]) -> [f64; N] {
+    let unit = |a: usize| units[a % (N / 4)];
+    let largest = (0..N).map(|a| row[a].abs() / unit(a)).fold(0.0, f64::max);
     let combined = combine_all(&row.map(|x| [x]));
-    combined.map(|[x]| if x.abs() < 1e-13 * largest { 0.0 } else { 0.25 * x })
+    array::from_fn(|a| {
+        let [x] = combined[a];
+        if x.abs() / unit(a) < 1e-13 * largest { 0.0 } else { 0.25 * x }
+    })
 }
 
 #[cfg(test)]

@@ -65,7 +65,8 @@ fn tables(middle: [Polynomial; 16], sides: [f64; 2], thickness: f64) -> Tables<1
         })
     };
     let strain = points(4, 2).map(|(p, z, weight)| ([at([1, 0], p, z), at([0, 1], p, z), through(p)], weight));
-    let (rows, weights) = strain.map(|(rows, weight)| (rows.map(|row| functions(&row)), weight)).unzip();
+    let units = [1.0, sides[0], sides[1], thickness];
+    let (rows, weights) = strain.map(|(rows, weight)| (rows.map(|row| functions(&row, &units)), weight)).unzip();
     let mass = points(5, 3).map(|(p, z, weight)| {
         let shape =
             Derivatives { value: at([0, 0], p, z), x: at([1, 0], p, z), y: at([0, 1], p, z), z: Some(through(p)) };

@@ -75,8 +75,9 @@ fn tables<const N: usize>(
     let (membrane_rule, bending_rule) = membrane.rules();
     let area = sides[0] * sides[1];
     let at = |orders: [usize; 2], point: [f64; 2]| derivative(&functions, sides, orders, point);
-    let bent = samples(area, bending_rule, |p| [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|d| at(d, p)));
-    let stretched = samples(area, membrane_rule, |p| [[1, 0], [0, 1]].map(|d| at(d, p)));
+    let units = [1.0, sides[0], sides[1], area];
+    let bent = samples(units, bending_rule, |p| [[1, 0], [0, 1], [2, 0], [0, 2], [1, 1]].map(|d| at(d, p)));
+    let stretched = samples(units, membrane_rule, |p| [[1, 0], [0, 1]].map(|d| at(d, p)));
     let stretched = match membrane {
         Membrane::Projected => {
             let projection = Projection::membrane(&stretched, followed);
@@ -91,13 +92,14 @@ fn tables<const N: usize>(
     Tables { sides, functions, mass: mass.collect(), groups }
 }
 
-/// Samples at the points of a rule.
+/// Samples at the points of a rule; `units` are those of the kinds of shape functions, the last one the area.
 fn samples<const N: usize, const D: usize>(
-    area: f64,
+    units: [f64; 4],
     rule: Rule,
     table: impl Fn([f64; 2]) -> [[f64; N]; D],
 ) -> Samples<N, D> {
     let points = rule.square().into_iter();
-    let (tables, weights) = points.map(|(p, weight)| (table(p).map(|row| functions(&row)), weight * area)).unzip();
+    let table = |p| table(p).map(|row| functions(&row, &units));
+    let (tables, weights) = points.map(|(p, weight)| (table(p), weight * units[3])).unzip();
     Samples::new(rule, tables, weights)
 }

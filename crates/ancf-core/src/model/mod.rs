@@ -246,7 +246,7 @@ impl Model {
         let known = self.moved.iter().find(|moved| moved.coordinate == coordinate).map(|moved| moved.motion);
         let value = format!("coordinate {coordinate}, which another support moves differently");
         let valid = !self.fixed[coordinate] || known == motion;
-        InputError::check("motion", value, valid, "one motion of each coordinate")
+        InputError::check("at", value, valid, "one motion of each coordinate")
     }
 
     /// Fixes all coordinates of the nodes at a place.

@@ -24,12 +24,12 @@ impl Course {
     ///
     /// # Errors
     ///
-    /// At least two rows, all finite, the times strictly increasing.
-    pub fn table(rows: Vec<[f64; 2]>) -> Result<Self, InputError> {
+    /// At least two rows, all finite, the times strictly increasing; `argument` is what they are called.
+    pub fn table(argument: &str, rows: Vec<[f64; 2]>) -> Result<Self, InputError> {
         let increasing = rows.windows(2).all(|pair| pair[0][0] < pair[1][0]);
         let finite = rows.iter().flatten().all(|x| x.is_finite());
         let allowed = "at least two rows [t, value] of finite numbers, t strictly increasing";
-        InputError::check("motion", format!("{rows:?}"), rows.len() > 1 && increasing && finite, allowed)?;
+        InputError::check(argument, format!("{rows:?}"), rows.len() > 1 && increasing && finite, allowed)?;
         Ok(Self::Table(Spline::new(rows)))
     }
 
@@ -117,16 +117,16 @@ impl SupportMotion {
     ///
     /// All must be finite, an axis must have a direction, and the motion must begin where the support is.
     pub(super) fn validate(&self) -> Result<(), InputError> {
-        let courses = self.translation.iter().map(|(direction, course)| (direction, course));
-        let courses = courses.chain(self.rotation.iter().map(|(_, axis, course)| (axis, course)));
-        for (direction, course) in courses {
+        let courses = self.translation.iter().map(|(direction, course)| ("translation", direction, course));
+        let courses = courses.chain(self.rotation.iter().map(|(_, axis, course)| ("rotation.angle", axis, course)));
+        for (argument, direction, course) in courses {
             let finite = direction.iter().chain(&course.at(1.0)).all(|x| x.is_finite());
-            InputError::check("motion", format!("{course:?}"), finite, "finite numbers")?;
-            InputError::check("motion", course.at(0.0)[0], course.at(0.0)[0] == 0.0, "0 at time 0")?;
+            InputError::check(argument, format!("{course:?}"), finite, "finite numbers")?;
+            InputError::check(argument, course.at(0.0)[0], course.at(0.0)[0] == 0.0, "0 at time 0")?;
         }
         if let Some((_, axis, _)) = self.rotation {
             let length = Vector3::from(axis).norm();
-            InputError::check("motion", format!("{axis:?}"), length > 0.0, "an axis that has a direction")?;
+            InputError::check("rotation.axis", format!("{axis:?}"), length > 0.0, "an axis that has a direction")?;
         }
         Ok(())
     }
@@ -160,7 +160,7 @@ mod tests {
 
     fn courses() -> Vec<Course> {
         let table = vec![[0.0, 0.0], [0.3, 0.5], [0.4, 0.7], [1.0, -0.2]];
-        vec![Course::Sine { amplitude: 0.3, frequency: 2.0 }, Course::table(table).unwrap()]
+        vec![Course::Sine { amplitude: 0.3, frequency: 2.0 }, Course::table("translation", table).unwrap()]
     }
 
     #[test]
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn a_turning_point_is_accelerated_towards_the_axis() {
         let rows = vec![[0.0, 0.0], [1.0, 1.0]];
-        let spin = Course::table(rows).unwrap();
+        let spin = Course::table("rotation.angle", rows).unwrap();
         let speed = spin.at(2.0)[1];
         let motion = SupportMotion { rotation: Some(([1.0, 0.0, 0.0], [0.0, 0.0, 2.0], spin)), ..Default::default() };
         let [r, v, a] = motion.at(3.0, [3.0, 0.0, 0.5], true);

@@ -78,8 +78,9 @@ impl Model {
                 }
             }
         }
-        // A support that holds a motion by less than this, relative to the others, does not count.
-        const HELD: f64 = 1e-8;
+        // The square of how far a support must hold a motion, relative to the others, to count: a millionth, so that the ends
+        // of a strip ten thousand times as long as wide keep it from turning about itself.
+        const HELD: f64 = 1e-12;
         let named = |motion: &Vector6<f64>| (gram * motion).norm() <= HELD * gram.norm().max(1.0);
         let eigen = SymmetricEigen::new(gram);
         let largest = eigen.eigenvalues.max().max(1.0);

@@ -156,9 +156,13 @@ fn moved_supports_do_work() {
     let motion = SupportMotion {
         translation: vec![(
             [0.0, 0.0, 1.0],
-            Course::table(vec![[0.0, 0.0], [0.1, 0.01], [0.2, -0.01], [0.3, 0.02]]).unwrap(),
+            Course::table("translation", vec![[0.0, 0.0], [0.1, 0.01], [0.2, -0.01], [0.3, 0.02]]).unwrap(),
         )],
-        rotation: Some(([0.0; 3], [0.0, 1.0, 0.0], Course::table(vec![[0.0, 0.0], [0.2, 0.3], [0.3, 0.7]]).unwrap())),
+        rotation: Some((
+            [0.0; 3],
+            [0.0, 1.0, 0.0],
+            Course::table("rotation.angle", vec![[0.0, 0.0], [0.2, 0.3], [0.3, 0.7]]).unwrap(),
+        )),
     };
     model.move_support(body, "edge:x0".parse().unwrap(), &all, motion).unwrap();
     let states = Method::ALL.map(|method| end(model.clone(), &options(method, Steps::fixed(2e-4), 0.3)));

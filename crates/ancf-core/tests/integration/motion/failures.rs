@@ -106,12 +106,12 @@ fn contradictory_motions_are_refused() {
     // The corner belongs to both edges.
     let before = model.clone();
     let error = model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(3.0)).unwrap_err();
-    assert_eq!(error.argument, "motion");
+    assert_eq!(error.argument, "at");
     assert!(model.fix(body, "corner:x0y1".parse().unwrap(), r[0]).is_err());
     assert_eq!((model.fixed(), model.moved()), (before.fixed(), before.moved()), "nothing is changed by an error");
     model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(2.0)).unwrap();
     let late = SupportMotion {
-        translation: vec![([1.0; 3], Course::table(vec![[0.0, 1.0], [1.0, 2.0]]).unwrap())],
+        translation: vec![([1.0; 3], Course::table("translation", vec![[0.0, 1.0], [1.0, 2.0]]).unwrap())],
         ..SupportMotion::default()
     };
     assert!(model.move_support(body, "edge:x1".parse().unwrap(), &r, late).is_err());
