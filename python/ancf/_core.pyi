@@ -197,4 +197,8 @@ def modes(
     threads: int | None,
     progress: Callable[[float], Any] | None,  # called with the number of modes found
 ) -> tuple[Run, _FloatArray, _FloatArray]: ...  # (modes,) eigenvalues, 1/s2; (modes, n) shapes, x . M x = 1
+def curve(
+    rows: _FloatArray,  # (rows, 2): t, value
+    t: _FloatArray,  # (times,)
+) -> _FloatArray: ...  # (times,) of the smooth curve on which supports move
 def info() -> dict[str, str]: ...  # versions of ancf-core and faer, threads, CPU features, SIMD lanes

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from ancf.balance import EnergyWarning
 from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, plan, reproduce, run, stability
 from ancf.commands.signals import was_stopped, watch_signals
+from ancf.courses import CourseWarning
 from ancf.errors import InputError
 
 _COMMANDS = (run, plan, chart, stability, reproduce, info)
@@ -30,7 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     watch_signals()
     # Commands tell them in their own way.
-    warnings.simplefilter("ignore", EnergyWarning)
+    for category in (EnergyWarning, CourseWarning):
+        warnings.simplefilter("ignore", category)
     try:
         status: int = options.call(options)
     except InputError as error:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ancf import _core
 from ancf.balance import balance_warnings
+from ancf.courses import course_warnings
 from ancf.model import Model
 from ancf.probes import Probe, Quantity
 from ancf.run import Dynamic, Static
@@ -161,10 +162,17 @@ class Result:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is doubtful about a motion: where and how far its energy balance is off, and what to try."""
-        if not isinstance(self.run, Dynamic) or self._rests():
+        """What is doubtful about a motion, and what to try.
+
+        Tables over time that it does not see as they are meant; where and how far its energy balance is off.
+        """
+        if not isinstance(self.run, Dynamic):
             return ()
-        return balance_warnings(self.run, self.energy, any(support.moves for support in self.model.supports))
+        courses = course_warnings(self.model, self.run)
+        if self._rests():
+            return courses
+        moved = any(support.moves for support in self.model.supports)
+        return (*courses, *balance_warnings(self.run, self.energy, moved))
 
     def _rests(self) -> bool:
         """Whether all nodal coordinates stay where they are, but for rounding: energies are rounding, too."""
