@@ -99,6 +99,6 @@ def test_curves_are_splines_that_begin_at_rest(times: list[float], lowest: float
     value = np.where(np.arange(len(t)) == len(t) // 2, 0.01 if lowest < -0.15 else 1.0, 0.0)
     fine = np.linspace(t[0], t[-1], 1001)
     found = _core.curve(np.column_stack((t, value)), fine)
-    expected = CubicSpline(t, value, bc_type=((1, 0.0), (2, 0.0)))(fine)
+    expected = CubicSpline(t, value, bc_type=((1, np.array(0.0)), (2, np.array(0.0))))(fine)
     np.testing.assert_allclose(found, expected, atol=1e-13)
     assert found.min() == pytest.approx(lowest, abs=2e-3)

@@ -16,7 +16,7 @@ _IndexArray: TypeAlias = NDArray[np.uint64]
 _At: TypeAlias = str | tuple[float, float]
 _History: TypeAlias = str | Sequence[tuple[float, float]]
 
-__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "info", "modes", "simulate", "solve_static"]
+__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "curve", "info", "modes", "simulate", "solve_static"]
 
 __version__: str
 
@@ -150,6 +150,8 @@ class Run:
     def negative_pivots(
         self,
     ) -> NDArray[np.int64]: ...  # (states,) of the tangent at each state; -1 where it was not counted
+    @property
+    def unsaved(self) -> str | None: ...  # why the last checkpoint could not be written
     @property
     def exception(self) -> BaseException | None: ...  # what stopped an interrupted run
 

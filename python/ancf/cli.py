@@ -11,6 +11,7 @@ from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complai
 from ancf.commands.signals import was_stopped, watch_signals
 from ancf.courses import CourseWarning
 from ancf.errors import InputError
+from ancf.run import CheckpointWarning
 
 _COMMANDS = (run, plan, chart, stability, reproduce, info)
 
@@ -31,8 +32,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     watch_signals()
     # Commands tell them in their own way.
-    for category in (EnergyWarning, CourseWarning):
-        warnings.simplefilter("ignore", category)
+    for told in (EnergyWarning, CourseWarning, CheckpointWarning):
+        warnings.simplefilter("ignore", told)
     try:
         status: int = options.call(options)
     except InputError as error:

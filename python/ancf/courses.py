@@ -72,7 +72,8 @@ def _missed_impulse(rows: FloatArray, step: float, until: float) -> tuple[FloatA
     starts, ends = map(np.unique, _steps_around(bends, step, until))
 
     def value(x: FloatArray) -> FloatArray:
-        return np.interp(x, t, factor)
+        factors: FloatArray = np.interp(x, t, factor)
+        return factors
 
     # Between bends and zeros the impulse is that of trapezoids and has no extremes.
     grid = np.concatenate(([0.0], bends, [until]))

@@ -11,8 +11,6 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from ancf import _core
-from ancf.balance import EnergyWarning
-from ancf.courses import CourseWarning, course_warnings
 from ancf.errors import Interrupted, SolveError, from_core
 from ancf.inputs import numbers, whole
 from ancf.model import Model
@@ -151,6 +149,8 @@ newton, tolerance, max_iterations, reuse : optional
         beyond its rows; also in `Result.warnings`.
     EnergyWarning
         If the energy balance is off, so that the motion cannot be right; also in `Result.warnings`.
+    CheckpointWarning
+        If the last checkpoint could not be written, the disk is full, say; there, too.
     """
     run = Dynamic(
         until=until,
@@ -190,17 +190,13 @@ def solve(
     check_threads(threads)
     run.check(model)
     core = model.assemble(run.history)
-    courses = course_warnings(model, run) if isinstance(run, Dynamic) else ()
-    for doubt in courses:
-        warnings.warn(doubt, CourseWarning, stacklevel=3)
     with meter(progress, run.end, run.unit) as call, from_core():
         outcome = (start or run.start)(core, threads, call)
         if call and outcome.exception is None:
             call(outcome.reached)
     result = Result.of(model, run, outcome)
-    for doubt in result.warnings:
-        if doubt not in courses:
-            warnings.warn(doubt, EnergyWarning, stacklevel=3)
+    for doubt in result.doubts():
+        warnings.warn(doubt, stacklevel=3)
     place = f"{run.parameter} = {result.reached:.6g} {run.unit}".rstrip()
     if outcome.exception is not None:
         raise _stopped(outcome.exception, place, result)
