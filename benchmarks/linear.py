@@ -1,4 +1,4 @@
-"""Print tables of the linear solves: our factorisation beside MKL PARDISO and SciPy's SuperLU, on the same tangents.
+"""Print a table of the linear solves: our factorisation beside MKL PARDISO and SciPy's SuperLU, on the same tangents.
 
 Run it from any folder with ``python benchmarks/linear.py [--quick] [--divisions 8 66 148]``; it needs ``pypardiso``.
 What is timed, and what biases it, is in ``benchmarks/README.md``.
@@ -10,6 +10,7 @@ import argparse
 import ctypes
 import json
 import os
+import resource
 import subprocess
 import sys
 import tempfile
@@ -30,8 +31,9 @@ FloatArray = NDArray[np.float64]
 # Elements along each side of a square plate: up to 2.4e3, then 1e4, 4e4, 2e5 and 1e6 free coordinates.
 DIVISIONS = (2, 4, 8, 16, 33, 66, 148, 333)
 QUICK = (2, 8)
-# Beyond, SuperLU, which knows no symmetry, takes minutes and more memory than most machines have.
-LARGEST_SUPERLU = 66
+# What a solver may take, as the speed of ours is judged: bytes, and seconds for all of its repeats.
+MEMORY = 12 * 2**30
+PATIENCE = 1200.0
 THREADS = ("RAYON_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 SECONDS = 2.0  # of repeats
 MOST_REPEATS = 300
@@ -153,6 +155,7 @@ class SuperLU(Solver):
 
 
 PARDISO = "PARDISO, LLT"
+ONE_THREAD = ("SuperLU",)  # whatever they are given
 SOLVERS: dict[str, type[Solver]] = {
     "ancf": Ours,
     PARDISO: Pardiso,
@@ -161,8 +164,8 @@ SOLVERS: dict[str, type[Solver]] = {
 }
 
 
-def save(n: int, folder: Path) -> Path:
-    """Write the tangent and the load of the plate: the upper triangle by rows."""
+def save(n: int, folder: Path) -> tuple[Path, int]:
+    """Write the tangent and the load of the plate, the upper triangle by rows; return the number of coordinates too."""
     core = plate(n).assemble("ramp")
     q = core.reference()
     free = core.free()
@@ -178,7 +181,7 @@ def save(n: int, folder: Path) -> Path:
     np.savez(
         path, data=matrix.data, indices=matrix.indices, indptr=matrix.indptr, right=core.external_force(q, 1.0)[natural]
     )
-    return path
+    return path, natural.size
 
 
 def load(path: Path) -> tuple[scipy.sparse.csr_matrix, FloatArray]:
@@ -220,45 +223,68 @@ def peak() -> float:
     return float(status.split("VmHWM:")[1].split()[0]) / 1024
 
 
-def run(name: str, system: Path, threads: int) -> dict[str, float] | None:
-    """Time a solver in a process of its own; ``None`` if that did not work."""
+def limit_memory() -> None:
+    """Let this process take no more than a solver may."""
+    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
+
+
+def run(name: str, system: Path, threads: int) -> dict[str, float] | str:
+    """Time a solver in a process of its own, or say why that did not work."""
     command = [sys.executable, __file__, "--one", name, str(system)]
     environment = os.environ | dict.fromkeys(THREADS, str(threads))
-    process = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    try:
+        process = subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=False, timeout=PATIENCE,
+            preexec_fn=limit_memory,
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return f"not done after {PATIENCE:.0f} s"
     if process.returncode:
         print(f"{name} on {system.stem} x {system.stem}: {process.stderr.strip()[-300:]}", file=sys.stderr)
-        return None
+        return f"failed within {MEMORY / 2**30:.0f} GiB"
     found: dict[str, float] = json.loads(process.stdout)
     return found
 
 
-def table(systems: list[Path], threads: int, repeats: int) -> None:
-    """Print what all solvers take."""
-    print(f"\n{threads} thread{'s' if threads > 1 else ''}:\n")
-    print("| coordinates | solver | factorise, ms | solve, ms | both, of PARDISO's | setup, ms | memory, MB |")
-    print("|---|---|---|---|---|---|---|")
-    for system in systems:
-        names = [name for name in SOLVERS if name != "SuperLU" or int(system.stem) <= LARGEST_SUPERLU]
-        runs: dict[str, list[dict[str, float]]] = {name: [] for name in names}
-        for _ in range(repeats):
-            for name in names:
-                if (found := run(name, system, threads)) is not None:
-                    runs[name].append(found)
-        best = {name: {key: min(r[key] for r in found) for key in found[0]} for name, found in runs.items() if found}
-        sizes = [found["size"] for found in best.values()]
-        if max(sizes) > 1.0001 * min(sizes):
-            raise SystemExit(f"the solvers disagree: {best}")
-        other = best.get(PARDISO)
-        for name, found in best.items():
-            both = found["factorise"] + found["solve"]
-            ratio = f"{both / (other['factorise'] + other['solve']):.2f}" if other else "-"
-            times = [f"{1e3 * found[key]:.3g}" for key in ("factorise", "solve", "setup")]
-            cells = [f"{found['n']:.0f}", name, times[0], times[1], ratio, times[2], f"{found['memory']:.0f}"]
-            print(f"| {' | '.join(cells)} |", flush=True)
+def row(*cells: str) -> None:
+    """Print a row of the table."""
+    print(f"| {' | '.join(cells)} |", flush=True)
+
+
+def milliseconds(seconds: float) -> str:
+    """Write a time with three digits, or to the millisecond."""
+    return f"{1e3 * seconds:.3g}" if seconds < 0.1 else f"{1e3 * seconds:.0f}"
+
+
+def rows(system: Path, n: int, threads: int, repeats: int) -> None:
+    """Print what the solvers take for a system of ``n`` coordinates."""
+    names = [name for name in SOLVERS if name not in ONE_THREAD or threads == 1]
+    runs: dict[str, list[dict[str, float]]] = {name: [] for name in names}
+    failures: dict[str, str] = {}
+    for _ in range(repeats):
+        for name in [name for name in names if name not in failures]:
+            outcome = run(name, system, threads)
+            if isinstance(outcome, str):
+                failures[name] = outcome
+            else:
+                runs[name].append(outcome)
+    best = {name: {key: min(r[key] for r in found) for key in found[0]} for name, found in runs.items() if found}
+    sizes = [found["size"] for found in best.values()]
+    if sizes and max(sizes) > 1.0001 * min(sizes):
+        raise SystemExit(f"the solvers disagree: {best}")
+    other = best.get(PARDISO)
+    for name in names:
+        if (found := best.get(name)) is None:
+            row(f"{n}", f"{threads}", name, failures[name], "", "", "", "")
+            continue
+        both = found["factorise"] + found["solve"]
+        ratio = f"{both / (other['factorise'] + other['solve']):.2f}" if other else ""
+        times = [milliseconds(found[key]) for key in ("factorise", "solve", "setup")]
+        row(f"{n}", f"{threads}", name, times[0], times[1], ratio, times[2], f"{found['memory']:.0f}")
 
 
 def main() -> None:
-    """Print the tables."""
+    """Print the table."""
     parser = argparse.ArgumentParser(description="Time our factorisation, PARDISO and SuperLU.")
     parser.add_argument("--quick", action="store_true", help="see that it runs: small meshes")
     parser.add_argument("--divisions", type=int, nargs="+", help="elements along each side")
@@ -271,9 +297,22 @@ def main() -> None:
         return
     divisions = arguments.divisions or (QUICK if arguments.quick else DIVISIONS)
     with tempfile.TemporaryDirectory() as folder:
-        systems = [save(n, Path(folder)) for n in divisions]
-        for threads in arguments.threads or (1, os.cpu_count() or 1):
-            table(systems, threads, arguments.repeats)
+        row(
+            "coordinates",
+            "threads",
+            "solver",
+            "factorise, ms",
+            "solve, ms",
+            "both, of PARDISO's",
+            "setup, ms",
+            "memory, MB",
+        )
+        print("|---|---|---|---|---|---|---|---|")
+        for n in divisions:
+            system, coordinates = save(n, Path(folder))
+            for threads in arguments.threads or (1, os.cpu_count() or 1):
+                rows(system, coordinates, threads, arguments.repeats)
+            system.unlink()
 
 
 if __name__ == "__main__":

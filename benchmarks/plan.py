@@ -16,7 +16,7 @@ from itertools import product
 
 import numpy as np
 from plan_scenes import Case, developed, made_later
-from plan_unseen import first_round, kept
+from plan_unseen import first_round, kept, last_round
 
 import ancf
 from ancf.plan.errors import Values, distance, scales
@@ -71,7 +71,11 @@ class Line:
 
 def judge(name: str) -> list[Line]:
     """Plan a scene to all tolerances, and compare with references and a chart."""
-    case = next(case for case in (*developed(), *made_later(), *first_round(), *kept()) if case.scene.title == name)
+    case = next(
+        case
+        for case in (*developed(), *made_later(), *first_round(), *kept(), *last_round())
+        if case.scene.title == name
+    )
     pilots = Pilots(case.scene, ["A"], 1e9, 1)
     references: dict[Family, Pilot] = {}
     for family, mesh in zip((CONTINUOUS, THIN[0]), case.fine, strict=True):
@@ -170,7 +174,7 @@ def main() -> None:
     options = parser.parse_args()
     sets = {"developed on": developed(), "made later": made_later(), "first unseen": first_round()}
     if options.holdout:
-        sets = {"kept": kept()}
+        sets = {"kept": kept(), "of the last round": last_round()}
     named = {name: [case.scene.title for case in cases] for name, cases in sets.items()}
     columns = "scene, tolerance, chosen, true error, promised, reference to, s, cheapest s, ratio, plan s, reference s"
     print(f"| {columns.replace(', ', ' | ')} |")

@@ -1,4 +1,4 @@
-"""Scenes that were made without a look at what plans do with them: a first round, and one kept for the end."""
+"""Scenes that were made without a look at what plans do with them, in three rounds."""
 
 from __future__ import annotations
 
@@ -160,6 +160,62 @@ def kept_motions() -> Iterator[Case]:
         (1, 2, 4),
         Stepping("esdirk", step=0.1 / 400),
     )
+
+
+def last_statics() -> Iterator[Case]:
+    """Yield statics made after the way up and down had been written anew."""
+    run = ancf.Static(load_factors=[0.5, 1.0])
+    blade = plate((0.8, 0.3), 4e-3, STEEL)
+    bend = [ancf.Moment(at="edge:x1", per_length=150.0), WEIGHT]
+    yield Case(scene("plank bent", blade, [WALL], bend, (0.25, 0.1), run, "stress_top"), ((24, 12), (40, 20)))
+    shell = ancf.Cylinder(
+        radius=0.08, angle=(0.0, 3.1), length=(0.0, 0.2), divisions=(4, 4), thickness=3e-3, material=RUBBER
+    )
+    blow = [ancf.Pressure(pressure=150.0)]
+    yield Case(scene("sleeve blown", shell, [FOOT], blow, (1.0, 0.15), run, "displacement"), ((32, 20), (56, 32)))
+    zone = ancf.Sphere(
+        radius=0.3, longitude=(0.0, 2.0), latitude=(-0.3, 0.4), divisions=(4, 4), thickness=2e-3, material=STEEL
+    )
+    pull = [line("y1", 0.0, 0.0, 4e3)]
+    yield Case(scene("zone pulled", zone, [FOOT], pull, (1.2, 0.4), run), ((40, 20), (64, 32)))
+
+
+def last_motions() -> Iterator[Case]:
+    """Yield motions made after the way up and down had been written anew."""
+    tongue = plate((0.25, 0.1), 1e-3, STEEL)
+    tap = ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, 30.0), history=[(0.0, 0.0), (4e-3, 1.0), (8e-3, 0.0)])
+    yield Case(
+        scene("tongue tapped", tongue, [WALL], [tap], (0.25, 0.05), ancf.Dynamic(until=0.03, step=2e-4), "velocity"),
+        ((20, 6), (32, 8)),
+        _X,
+        _Y,
+        Stepping("esdirk", step=0.03 / 300),
+    )
+    disc = ancf.Annulus(radii=(0.08, 0.2), angle=2.5, divisions=(4, 4), thickness=4e-3, material=RUBBER)
+    fling = ancf.LineLoad(at="edge:x1", per_length=(0.0, 3.0, 5.0), history=[(0.0, 1.0), (0.02, 1.0), (0.03, 0.0)])
+    yield Case(
+        scene("disc flung", disc, [], [fling, WEIGHT], (0.2, 2.5), ancf.Dynamic(until=0.08, step=5e-4), "displacement"),
+        ((10, 20), (16, 36)),
+        (1, 2, 4, 8),
+        (1, 2, 3, 4, 6, 8, 12),
+        Stepping("verlet", rtol=1e-4),
+    )
+    awning = ancf.Cylinder(
+        radius=0.25, angle=(0.3, 1.4), length=(0.0, 0.2), divisions=(4, 4), thickness=4e-4, material=PAPER
+    )
+    yield Case(
+        scene("awning drops", awning, [HINGE], [WEIGHT], (1.4, 0.2), ancf.Dynamic(until=0.08, step=5e-4)),
+        ((16, 10), (28, 16)),
+        _X,
+        (1, 2, 4, 8),
+        Stepping("esdirk", step=0.08 / 320),
+    )
+
+
+def last_round() -> Iterator[Case]:
+    """Yield the scenes of the last round: planned once, nothing was changed for them."""
+    yield from last_motions()
+    yield from last_statics()
 
 
 def first_round() -> Iterator[Case]:

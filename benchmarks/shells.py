@@ -66,6 +66,7 @@ VARIANTS: Mapping[str, list[dict[str, Any]]] = {
         {"curvature": "koiter"},
         {"divisions": [48, 32]},
         {"divisions": [64, 44]},
+        {"membrane": "full"},
         {"element": "thin48"},
     ],
     "pinched_cylinder": [

@@ -336,6 +336,7 @@ def test_static_run_of_a_shell(element: ElementKind, membrane: MembraneRule | No
         ("mip", 5e-3, {"method": "esdirk"}, reference.RungeKutta.esdirk()),
         ("mip", 5e-3, {"method": "energy_momentum"}, reference.EnergyMomentum()),
         ("mip", 5e-4, {"method": "verlet"}, reference.Verlet()),
+        ("mip", 5e-4, {"method": "verlet", "lumped": True}, reference.Verlet()),
         ("mip", 5e-4, {"method": "rk"}, reference.RungeKutta.dormand_prince()),
     ],
 )
@@ -357,6 +358,8 @@ def test_dynamic_run(
     plain = reference.Model(mesh, **RUBBER._asdict(), **Variant(element, membrane).plain())
     plain.fix("corner:x0y0", ["r"])
     plain.add_gravity((0, 0, -9.81))
+    if options.get("lumped"):
+        plain.lump_mass()
     x, y = mesh.nodes.T
     velocity = np.zeros((len(x), len(plain.vectors), 3))
     velocity[:, 0, 0], velocity[:, 1, 0] = 2 * x, 2

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -55,6 +56,24 @@ def test_about_any_state_and_a_negative_frequency_where_it_buckles() -> None:
     np.testing.assert_allclose(twice.eigenvalue, [beam(1, -2 * critical), beam(2, -2 * critical)], rtol=1e-3)
     assert twice.unstable == 1
     assert twice.frequency[0] == pytest.approx(-np.sqrt(-beam(1, -2 * critical)) / (2 * np.pi), rel=1e-3)
+
+
+@pytest.mark.parametrize("membrane", ["projected", "full", "lobatto"])
+@pytest.mark.parametrize(("size", "divisions"), [((2.0, 0.1), (8, 1)), ((2.0, 0.1), (1, 1)), ((1.0, 0.7), (4, 1))])
+def test_a_thin_free_strip_has_six_zeros(
+    membrane: Literal["projected", "full", "lobatto"], size: tuple[float, float], divisions: tuple[int, int]
+) -> None:
+    """Rounded strains at rest are membrane forces that hold a flat strip against turning about its long side."""
+    strip = ancf.Rectangle(
+        size=size,
+        divisions=divisions,
+        thickness=0.001,
+        material=ancf.Material(E=2e11, nu=0.3, density=7800.0),
+        membrane=membrane,
+    )
+    frequency = ancf.modes(ancf.Model(bodies={"strip": strip}), count=7).frequency
+    assert np.all(frequency[:6] == 0)
+    assert frequency[6] > 0.5
 
 
 def test_dense_eigenvalues_are_the_same() -> None:

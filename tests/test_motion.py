@@ -1,6 +1,7 @@
 """Methods, error control, damping, moved supports and checkpoints from Python."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -148,14 +149,35 @@ def test_a_stopped_run_goes_on_to_the_same_bits(
 def test_a_broken_checkpoint_is_refused(tmp_path: Path) -> None:
     checkpoint = tmp_path / "checkpoint"
     ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=checkpoint)
-    checkpoint.write_bytes(checkpoint.read_bytes()[:-8])
-    with pytest.raises(ancf.InputError, match=r"checkpoint: is \d+ bytes; allowed is a whole checkpoint file"):
-        ancf.simulate(pendulum(), until=0.01, step=1e-3, resume=checkpoint)
+    whole = checkpoint.read_bytes()
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 16  # in a number, which stays one
+    for broken in (whole[:-8], bytes(flipped)):
+        checkpoint.write_bytes(broken)
+        with pytest.raises(ancf.InputError, match=r"checkpoint: is damaged: .* allowed is a whole checkpoint file"):
+            ancf.simulate(pendulum(), until=0.01, step=1e-3, resume=checkpoint)
     ancf.simulate(pendulum(), until=0.01, step=1e-3, checkpoint=checkpoint)
     with pytest.raises(ancf.InputError, match="nodal coordinates"):
         ancf.simulate(pendulum(4), until=0.01, step=1e-3, resume=checkpoint)
     with pytest.raises(ancf.InputError, match="method"):
         ancf.simulate(pendulum(), until=0.01, step=1e-3, method="esdirk", resume=checkpoint)
+
+
+def test_a_checkpoint_that_cannot_be_written_any_more_does_not_end_the_run(tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    with pytest.warns(ancf.CheckpointWarning, match="not written: .*checkpoint: No such file") as given:
+        result = ancf.simulate(
+            pendulum(),
+            until=0.3,
+            step=1e-5,
+            method="verlet",
+            checkpoint=folder / "checkpoint",
+            progress=lambda _: shutil.rmtree(folder, ignore_errors=True),
+        )
+    assert result.status == "ok"
+    assert result.reached == 0.3
+    assert [str(doubt.message) for doubt in given] == list(result.warnings)
 
 
 def test_the_message_about_a_checkpoint_names_the_file(
@@ -167,7 +189,7 @@ def test_the_message_about_a_checkpoint_names_the_file(
     assert capsys.readouterr().err == f"ancf: {file}: cannot be read: No such file or directory\n"
     file.write_bytes(b"something else")
     assert main(arguments) == 2
-    assert capsys.readouterr().err == f"ancf: {file}: is 14 bytes; allowed is a whole checkpoint file\n"
+    assert capsys.readouterr().err == f"ancf: {file}: is 14 bytes; allowed is a whole checkpoint file of this version\n"
     assert not (tmp_path / "out").exists()
 
 

@@ -74,6 +74,45 @@ def test_a_strip_of_one_element_across_bends_in_its_plane_as_a_beam(
     assert tip == pytest.approx(bending + shear, rel=tolerance)
 
 
+@pytest.mark.parametrize(
+    ("element", "membrane", "divisions", "tolerance"),
+    [
+        ("thin36", "projected", (8, 1), 0.016),
+        ("thin36", "projected", (32, 4), 0.0015),
+        ("thin48", "projected", (8, 1), 0.018),
+        ("thin36", "full", (8, 1), 0.0015),
+        ("thin36", "lobatto", (8, 1), 0.0015),
+    ],
+)
+def test_a_strip_curved_in_its_plane_bends_as_a_curved_beam(
+    element: Any, membrane: Membrane, divisions: tuple[int, int], tolerance: float
+) -> None:
+    """A quarter of a ring under a radial force in its plane: pi P R (R / e - 1 + 6 E / (5 G)) / (4 A E), by Winkler.
+
+    Its end may shear. Where lines across stretch to cubics for nothing the strip bends much too far.
+    """
+    R, b, h, E, P = 1.0, 0.1, 0.002, 1e7, 1e-7
+    quarter = np.pi / 2
+    strip = ancf.Surface(
+        domain=((0.0, quarter), (R - b / 2, R + b / 2)),
+        position=lambda x, y: (y * np.cos(x), y * np.sin(x), 0 * x),
+        divisions=divisions,
+        thickness=h,
+        material=ancf.Material(E=E, nu=0.0),
+        element=element,
+        membrane=membrane,
+    )
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", fix=["r", "r_y", "r_x.z"])],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, P / b, 0.0))],
+        probes=[ancf.Probe(name="tip", at=(quarter, R), quantity="displacement")],
+    )
+    tip = ancf.solve_static(model, tolerance=1e-10).probes["tip"].value[-1, 1]
+    neutral = b / np.log((R + b / 2) / (R - b / 2))
+    assert tip == pytest.approx(np.pi * P * R / (4 * b * h * E) * (R / (R - neutral) - 1 + 2.4), rel=tolerance)
+
+
 def test_a_curved_strip_of_one_element_across_twists_as_a_beam() -> None:
     """A quarter of a ring, clamped, and a force across its plane: P R^3 ((3 pi / 4 - 2) / (G J) + pi / (4 E I))."""
     R, b, h, E = 1.0, 0.02, 0.0002, 2e11

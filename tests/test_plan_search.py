@@ -11,6 +11,8 @@ from ancf.plan import pilots
 from ancf.plan.ascent import Ascent
 from ancf.plan.cost import Costs, Rates
 from ancf.plan.descent import Descent
+from ancf.plan.errors import Side
+from ancf.plan.guess import Prior, fit
 from ancf.plan.ladder import CONTINUOUS, THIN, Choice, Rung, Stepping
 from ancf.plan.search import Search
 from ancf.plan.timing import Timing
@@ -87,9 +89,7 @@ def test_the_error_in_time_is_taken_out_of_what_is_known_best() -> None:
 def test_errors_of_mesh_and_steps_are_weighed() -> None:
     """One element along x errs by 0.1; two of them with the steps that were found are good enough and take 2 s."""
     search = _risen()
-    descent = Descent(search, np.inf)
-    descent.down()
-    descent.near()
+    Descent(search, np.inf).down()
     chosen = search.cheapest(search.observed())
     assert chosen is not None
     assert abs(chosen.values[0][1, 0] - 1.0) < 0.05
@@ -105,3 +105,76 @@ def test_of_runs_that_cost_the_same_the_more_precise_one_is_chosen() -> None:
     chosen = search.cheapest({slow: 0.001, quick: 0.02, near: 0.01})
     assert chosen is not None
     assert chosen.choice == near
+
+
+def test_errors_that_are_powers_are_found_again() -> None:
+    """0.3 / nx + 0.02 / ny^3, told by seven meshes: others are foretold to half."""
+
+    def error(nx: int, ny: int) -> float:
+        return 0.3 / nx + 0.02 / ny**3
+
+    meshes = [(1, 1), (2, 2), (4, 2), (4, 1), (4, 4), (8, 4), (16, 4)]
+    guess = fit([(Rung(THIN[0], (mesh,)), error(*mesh)) for mesh in meshes], Prior())
+    for mesh in [(32, 4), (16, 1), (16, 16), (3, 3)]:
+        assert 0.5 < guess(Rung(THIN[0], (mesh,))) / error(*mesh) < 1.5
+
+
+def test_one_mesh_tells_the_size_and_what_is_expected_the_rest() -> None:
+    guess = fit([(Rung(THIN[0], ((2, 2),)), 0.1)], Prior(rate_x=1.0, rate_y=3.0, part=0.5))
+    # 0.1 = size (1/2 1/2 + 1/2 1/8)
+    assert guess(Rung(THIN[0], ((4, 2),))) == pytest.approx(0.32 * (1 / 8 + 1 / 16))
+    assert guess(Rung(THIN[0], ((2, 4),))) == pytest.approx(0.32 * (1 / 4 + 1 / 128))
+
+
+class _Sudden(pilots.Pilots):
+    """Statics whose values are 1 and errors 0.5 / nx + 0.02 / ny; on 4 elements along x they happen to be without."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        nx, ny = choice.rung.divisions[0]
+        error = {2: 0.25, 4: 0.25 + 1e-4}.get(nx, 0.5 / nx) + 0.02 / ny
+        result: Any = SimpleNamespace(seconds={"setup": 0.0})
+        return pilots.Pilot(choice, result, [np.array([[0.0], [1.0 + error]])], float(choice.rung.elements), "ok")
+
+
+def test_differences_that_vanish_suddenly_are_not_believed() -> None:
+    """Four elements along x change nothing, as if the error of 0.25 were none: with eight it shows."""
+    search = _search(_Sudden(ancf.Scene("", _model(), ancf.Static()), ["A"], np.inf, 1), [], 0.05)
+    assert Ascent(search).up([THIN[0], CONTINUOUS])
+    assert abs(search.exact[0][1, 0] - 1.0) < 0.05
+    assert Side(1e-4, np.log2(0.25 / 1e-4)).sudden
+    assert not Side(1e-4, 5.0).sudden
+    assert not Side(0.01, 0.5).steady
+    # 0.25, by accident 1e-4, then 0.25 / 16: the second order over two refinements.
+    assert Side(1e-4, np.log2(0.25 / 1e-4)).rate_to(0.25 / 16) == pytest.approx(2.0)
+
+
+class _Locking(pilots.Pilots):
+    """Statics whose values are 1 and an error of `thin36` that shrinks slowly, of `thin48` fast."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        n = choice.rung.divisions[0][0]
+        error = 0.5 / n**2 if choice.rung.family == CONTINUOUS else 0.5 / n
+        result: Any = SimpleNamespace(seconds={"setup": 0.0})
+        values = [np.array([[0.0], [1.0 + error]])]
+        return pilots.Pilot(choice, result, values, float(choice.rung.elements), "ok")
+
+
+def test_a_climb_that_is_far_from_its_end_takes_no_dear_step() -> None:
+    """At 0.01 `thin48` needs some 16 elements along x; `thin36`, whose steps cost the same, some 200."""
+    locking = _Locking(ancf.Scene("", _model(), ancf.Static()), ["A"], np.inf, 1)
+    search = _search(locking, [], 1e-2)
+    assert Ascent(search).up([THIN[0], CONTINUOUS])
+    finest = {climb.family: climb.rung for climb in search.climbs}
+    assert search.best.family == CONTINUOUS
+    left = finest[THIN[0]]
+    assert left is not None
+    assert left.elements < search.best.elements
+    assert abs(search.exact[0][1, 0] - 1.0) <= search.own < 5e-3
+
+
+def test_nothing_is_tried_where_no_error_is_left_to_it() -> None:
+    search = _risen()
+    done = len(search.pilots.done)
+    search.in_time = search.tol
+    Descent(search, np.inf).down()
+    assert len(search.pilots.done) == done

@@ -20,6 +20,7 @@ CASES = {
     "cantilever_moment": [("end", 0, -12.0, 0.005)],
     "slit_annulus": [("A", 2, 13.891, 0.005), ("B", 2, 17.528, 0.005)],
     "pinched_hemisphere": [("outwards", 0, 4.067, 0.005), ("inwards", 1, -8.178, 0.005)],
+    "pinched_half_cylinder": [("A", 1, -1.71505, 0.005)],
     "pulled_cylinder": [("A", 1, 2.768, 0.010), ("B", 0, -4.551, 0.005), ("C", 0, -3.269, 0.013)],
 }
 
@@ -41,6 +42,15 @@ def test_the_pulled_cylinder_tells_that_it_snaps() -> None:
     result = ancf.load_scene(SCENES / "pulled_cylinder.toml").solve()
     assert isinstance(result, ancf.Result)
     np.testing.assert_allclose(result.jumps, [0.4967], atol=0.005)
+
+
+def test_buckled_skins_do_not_lead_newtons_method_astray() -> None:
+    """With extrapolated stress alone a step over a quarter of the load fails: its tangent has negative pivots."""
+    result = ancf.load_scene(SCENES / "pinched_hemisphere.toml").solve()
+    assert isinstance(result, ancf.Result)
+    assert result.counts["steps"] <= 3
+    assert result.counts["rejected"] <= 1
+    assert result.counts["iterations"] <= 25
 
 
 def test_all_scenes_are_valid() -> None:

@@ -37,13 +37,14 @@ from ancf.model import Model
 from ancf.plan import Plan, plan
 from ancf.probes import Probe
 from ancf.result import Energy, Record, Result
-from ancf.run import Dynamic, Modes, Static
+from ancf.run import CheckpointWarning, Dynamic, Modes, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import simulate, solve_static
 from ancf.supports import Rotation, Shake, Support
 
 __all__ = [
     "Annulus",
+    "CheckpointWarning",
     "Cylinder",
     "Dynamic",
     "Energy",

@@ -151,6 +151,8 @@ class Run:
         self,
     ) -> NDArray[np.int64]: ...  # (states,) of the tangent at each state; -1 where it was not counted
     @property
+    def unsaved(self) -> str | None: ...  # why the last checkpoint could not be written
+    @property
     def exception(self) -> BaseException | None: ...  # what stopped an interrupted run
 
 def solve_static(

@@ -10,6 +10,7 @@ from ancf.balance import EnergyWarning
 from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, plan, reproduce, run, stability
 from ancf.commands.signals import was_stopped, watch_signals
 from ancf.errors import InputError
+from ancf.run import CheckpointWarning
 
 _COMMANDS = (run, plan, chart, stability, reproduce, info)
 
@@ -30,7 +31,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     watch_signals()
     # Commands tell them in their own way.
-    warnings.simplefilter("ignore", EnergyWarning)
+    for told in (EnergyWarning, CheckpointWarning):
+        warnings.simplefilter("ignore", told)
     try:
         status: int = options.call(options)
     except InputError as error:

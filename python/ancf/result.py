@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ancf import _core
-from ancf.balance import balance_warnings
+from ancf.balance import EnergyWarning, balance_warnings
 from ancf.model import Model
 from ancf.probes import Probe, Quantity
-from ancf.run import Dynamic, Static
+from ancf.run import CheckpointWarning, Dynamic, Static
 
 if TYPE_CHECKING:
     import os
@@ -104,6 +104,8 @@ class Result:
         forces (evaluations), factorizations.
     seconds : dict of str to float
         total, setup, assembly, factorization, solve.
+    unsaved : str, optional
+        Why the last checkpoint could not be written.
     """
 
     model: Model = field(repr=False)
@@ -124,6 +126,7 @@ class Result:
     negative_pivots: NDArray[np.int64] = field(repr=False)
     counts: dict[str, int]
     seconds: dict[str, float]
+    unsaved: str | None = None
 
     @classmethod
     def of(cls, model: Model, run: Static | Dynamic, core: _core.Run) -> Result:
@@ -152,6 +155,7 @@ class Result:
             negative_pivots=core.negative_pivots,
             counts=core.counts,
             seconds=core.seconds,
+            unsaved=core.unsaved,
         )
 
     @property
@@ -161,10 +165,18 @@ class Result:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is doubtful about a motion: where and how far its energy balance is off, and what to try."""
-        if not isinstance(self.run, Dynamic) or self._rests():
-            return ()
-        return balance_warnings(self.run, self.energy, any(support.moves for support in self.model.supports))
+        """What is doubtful about a motion: where and how far its energy balance is off, what to try; no checkpoint."""
+        return tuple(str(doubt) for doubt in self.doubts())
+
+    def doubts(self) -> list[RuntimeWarning]:
+        """Return the same as the warnings that are given."""
+        doubts: list[RuntimeWarning] = []
+        if isinstance(self.run, Dynamic) and not self._rests():
+            moved = any(support.moves for support in self.model.supports)
+            doubts += [EnergyWarning(text) for text in balance_warnings(self.run, self.energy, moved)]
+        if self.unsaved is not None:
+            doubts.append(CheckpointWarning(f"the last checkpoint was not written: {self.unsaved}"))
+        return doubts
 
     def _rests(self) -> bool:
         """Whether all nodal coordinates stay where they are, but for rounding: energies are rounding, too."""

@@ -322,6 +322,10 @@ class Dynamic(_Run):
             )
 
 
+class CheckpointWarning(RuntimeWarning):
+    """The last checkpoint of a motion could not be written: what the file holds is older, if there is one."""
+
+
 def _check_folder(checkpoint: str | os.PathLike[str] | None) -> None:
     """Refuse a checkpoint that could not be written, before anything is computed."""
     if checkpoint is None:

@@ -11,7 +11,6 @@ from typing import Literal
 from numpy.typing import ArrayLike
 
 from ancf import _core
-from ancf.balance import EnergyWarning
 from ancf.errors import Interrupted, SolveError, from_core
 from ancf.inputs import numbers, whole
 from ancf.model import Model
@@ -147,6 +146,8 @@ newton, tolerance, max_iterations, reuse : optional
     -----
     EnergyWarning
         If the energy balance is off, so that the motion cannot be right; also in `Result.warnings`.
+    CheckpointWarning
+        If the last checkpoint could not be written, the disk is full, say; there, too.
     """
     run = Dynamic(
         until=until,
@@ -191,8 +192,8 @@ def solve(
         if call and outcome.exception is None:
             call(outcome.reached)
     result = Result.of(model, run, outcome)
-    for doubt in result.warnings:
-        warnings.warn(doubt, EnergyWarning, stacklevel=3)
+    for doubt in result.doubts():
+        warnings.warn(doubt, stacklevel=3)
     place = f"{run.parameter} = {result.reached:.6g} {run.unit}".rstrip()
     if outcome.exception is not None:
         raise _stopped(outcome.exception, place, result)

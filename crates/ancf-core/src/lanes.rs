@@ -147,6 +147,31 @@ impl<S: Simd> Transpose<S> {
         }
     }
 
+    /// The transpose of a square block of numbers.
+    #[inline(always)]
+    pub fn square<const SIDE: usize>(self, block: &[[f64; SIDE]; SIDE]) -> [[f64; SIDE]; SIDE] {
+        let mut transpose = [[0.0; SIDE]; SIDE];
+        let whole = SIDE - SIDE % S::F64_LANES;
+        for first in (0..whole).step_by(S::F64_LANES) {
+            for k in (0..SIDE - SIDE % FOUR).step_by(FOUR) {
+                let mut four = [self.simd.splat_f64s(0.0); FOUR];
+                for (value, row) in four.iter_mut().zip(&block[k..]) {
+                    *value = cast_slice(&row[first..first + S::F64_LANES])[0];
+                }
+                let values = self.simd.interleave_shfl_f64s(four);
+                for (values, lane) in cast_slice::<_, f64>(&values).chunks_exact(FOUR).zip(self.lanes) {
+                    transpose[first + lane][k..k + FOUR].copy_from_slice(values);
+                }
+            }
+        }
+        for i in 0..SIDE {
+            for k in (if i < whole { SIDE - SIDE % FOUR } else { 0 })..SIDE {
+                transpose[i][k] = block[k][i];
+            }
+        }
+        transpose
+    }
+
     /// Stores `SIZE` numbers of each element.
     #[inline(always)]
     pub fn store<const SIZE: usize>(self, numbers: &[Lanes<S>], elements: &mut [[f64; SIZE]]) {
@@ -243,4 +268,37 @@ pub fn table_axpy<S: Simd>(factor: f64, a: Vector<S>, b: Vector<S>) -> Vector<S>
 #[inline(always)]
 pub fn scale<S: Simd>(factor: Lanes<S>, a: Vector<S>) -> Vector<S> {
     [factor * a[0], factor * a[1], factor * a[2]]
+}
+
+#[cfg(test)]
+mod tests {
+    use pulp::WithSimd;
+
+    use super::*;
+
+    /// Transposes a block of `SIDE` x `SIDE` different numbers.
+    struct Square<const SIDE: usize>;
+
+    impl<const SIDE: usize> WithSimd for Square<SIDE> {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            let block: [[f64; SIDE]; SIDE] = std::array::from_fn(|i| std::array::from_fn(|j| (SIDE * i + j) as f64));
+            let transpose = Transpose::new(simd).square(&block);
+            for i in 0..SIDE {
+                for j in 0..SIDE {
+                    assert_eq!(transpose[i][j], block[j][i]);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_instruction_set_transposes_blocks() {
+        for arch in [Arch::Scalar, arch(4), arch(usize::MAX)] {
+            arch.dispatch(Square::<9>);
+            arch.dispatch(Square::<12>);
+        }
+    }
 }

@@ -16,6 +16,8 @@ pub struct Run {
     states: Vec<State>,
     coordinates: usize,
     reached: f64,
+    /// Why the last checkpoint could not be written.
+    unsaved: Option<std::io::Error>,
     exception: Option<PyErr>,
 }
 
@@ -26,9 +28,10 @@ impl Run {
         states: Vec<State>,
         coordinates: usize,
         reached: f64,
+        unsaved: Option<std::io::Error>,
         exception: Option<PyErr>,
     ) -> Self {
-        Self { end, states, coordinates, reached, exception }
+        Self { end, states, coordinates, reached, unsaved, exception }
     }
 
     fn series<'py>(&self, py: Python<'py>, number: impl Fn(&State) -> f64) -> Bound<'py, PyArray1<f64>> {
@@ -70,6 +73,11 @@ impl Run {
             Some(Outcome::Failed(failure)) => failure.to_string(),
             Some(Outcome::Interrupted) | None => "stopped on request".to_owned(),
         }
+    }
+
+    #[getter]
+    fn unsaved(&self) -> Option<String> {
+        self.unsaved.as_ref().map(ToString::to_string)
     }
 
     #[getter]

@@ -34,8 +34,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 enum Event {
     State(State),
     Reached(f64),
-    /// A checkpoint could not be written.
-    Unsaved(std::io::Error),
+    /// A checkpoint was written, or could not be.
+    Checkpoint(std::io::Result<()>),
     End(Result<report::Run, SolveError>),
 }
 
@@ -67,7 +67,11 @@ impl Saved {
     fn write(&mut self, make: &dyn Fn(&[State]) -> Vec<u8>) -> std::io::Result<()> {
         let mut temporary = self.path.clone().into_os_string();
         temporary.push(".new");
-        let done = std::fs::write(&temporary, make(&self.states)).and_then(|()| std::fs::rename(temporary, &self.path));
+        let done =
+            std::fs::write(&temporary, make(&self.states)).and_then(|()| std::fs::rename(&temporary, &self.path));
+        if done.is_err() {
+            let _ = std::fs::remove_file(&temporary);
+        }
         self.written = Some(Instant::now());
         done.map_err(|error| std::io::Error::new(error.kind(), format!("{}: {error}", self.path.display())))
     }
@@ -96,10 +100,8 @@ impl Observer for Messenger {
     fn checkpoint(&mut self, make: &dyn Fn(&[State]) -> Vec<u8>, last: bool) {
         let Some(saved) = &mut self.saved else { return };
         let recent = saved.written.is_some_and(|written| written.elapsed() < BETWEEN_CHECKPOINTS);
-        if (last || !recent)
-            && let Err(error) = saved.write(make)
-        {
-            let _ = self.events.send(Event::Unsaved(error));
+        if last || !recent {
+            let _ = self.events.send(Event::Checkpoint(saved.write(make)));
         }
     }
 
@@ -132,16 +134,17 @@ fn run(
     });
 
     let mut reached = 0.0;
+    let mut unsaved = None;
     let mut told = Instant::now();
     let exception = loop {
         match py.detach(|| receive(&mut receiver, PERIOD)) {
             Ok(Event::State(state)) => states.push(state),
             Ok(Event::Reached(t)) => reached = t,
-            Ok(Event::Unsaved(error)) => break error.into(),
+            Ok(Event::Checkpoint(done)) => unsaved = done.err(),
             Ok(Event::End(end)) => {
                 // A signal that came just before the end counts.
                 let exception = py.check_signals().err();
-                return finish(py, end, states, coordinates, reached, exception);
+                return finish(py, end, states, coordinates, reached, unsaved, exception);
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => {
@@ -165,9 +168,9 @@ fn run(
         match py.detach(|| receive(&mut receiver, left)) {
             Ok(Event::State(state)) => states.push(state),
             Ok(Event::Reached(t)) => reached = t,
-            Ok(Event::Unsaved(_)) => {}
-            Ok(Event::End(end)) => return finish(py, end, states, coordinates, reached, Some(exception)),
-            Err(_) => return Ok(Run::new(None, states, coordinates, reached, Some(exception))),
+            Ok(Event::Checkpoint(done)) => unsaved = done.err(),
+            Ok(Event::End(end)) => return finish(py, end, states, coordinates, reached, unsaved, Some(exception)),
+            Err(_) => return Ok(Run::new(None, states, coordinates, reached, unsaved, Some(exception))),
         }
     }
 }
@@ -203,10 +206,11 @@ fn finish(
     states: Vec<State>,
     coordinates: usize,
     reached: f64,
+    unsaved: Option<std::io::Error>,
     exception: Option<PyErr>,
 ) -> PyResult<Run> {
     match end {
-        Ok(end) => Ok(Run::new(Some(end), states, coordinates, reached, exception)),
+        Ok(end) => Ok(Run::new(Some(end), states, coordinates, reached, unsaved, exception)),
         Err(SolveError::Input(error)) => Err(input_error(py, &error)),
         Err(SolveError::Memory(error)) => Err(PyMemoryError::new_err(error.to_string())),
         Err(SolveError::Threads(error)) => Err(PyRuntimeError::new_err(error.to_string())),

@@ -6,6 +6,8 @@ import _thread
 import signal
 import sys
 import threading
+import time
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
@@ -52,10 +54,20 @@ def _raise_again(lost: sys.UnraisableHookArgs) -> None:
     """Raise `KeyboardInterrupt` once more, where Python cannot take it out of a finalizer."""
     if isinstance(lost.exc_value, KeyboardInterrupt):
         signal.signal(signal.SIGINT, _receive)
-        # A moment later: here it would be lost like the first.
-        threading.Timer(_MOMENT, _thread.interrupt_main).start()
+        threading.Thread(target=_interrupt_later, daemon=True).start()
     else:
         _told_elsewhere(lost)
+
+
+def _interrupt_later() -> None:
+    """Interrupt the main thread once it has left `_raise_again`: there it would be lost like the first time."""
+    main = threading.main_thread().ident
+    while True:
+        time.sleep(_MOMENT)
+        stack = traceback.walk_stack(sys._current_frames().get(main or 0))
+        if all(frame.f_code is not _raise_again.__code__ for frame, _ in stack):
+            _thread.interrupt_main()
+            return
 
 
 def _receive(_number: int, _frame: FrameType | None) -> None:

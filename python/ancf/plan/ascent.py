@@ -5,33 +5,37 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import product
 
 import numpy as np
 
 from ancf.plan.climb import Climb
 from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import Choice, Family, Rung
-from ancf.plan.learn import COMPARED, learn
+from ancf.plan.learn import COMPARED, compare, learn
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
 from ancf.plan.timing import SHARE
 
 BEST = 0.3
 """Part of the tolerance below which the finest rung's own error must be."""
-_CLEAR, _LITTLE = 0.1, 0.15
+_CLEAR, _LITTLE = 0.1, 0.2
 """The same that is tried for while the next rung costs no more than this part of the plan so far."""
+_COARSE, _MUCH = 0.35, 0.75
+"""And that is enough where the next rung costs more than this part of it."""
+_HOPEFUL, _GROWTH = 4.0, 4.0
+"""Seconds to the end of a climb, relative to the best, beyond which it takes cheap steps only; and growth of costs with
+a doubling."""
 _DOMINANT = 0.4
 """A side is refined if its error is at least this part of the largest."""
 _SMALL_SIDE = 0.05
 """Part of the tolerance below which a side is not refined further."""
-_RECONSIDERED, _APART = 64, 3.0
-"""Elements up to which another family may take over, and errors of the lead by which one must be off it for that."""
+_RECONSIDERED = 1024
+"""Elements up to which another family may take over."""
 _SHORTER = 5
 """Times that steps are shortened where they cannot be solved."""
 _PATIENCE = 2
 """Rungs in a row that may be no better than the one before."""
-_STALLED = 0.4
-"""Rate of convergence that counts as no better."""
 _AGREED = 0.6
 """Part of the tolerance up to which another element on the finest mesh may be off."""
 _RIVAL = 1.4
@@ -71,33 +75,64 @@ class Ascent:
         bool
             Whether any rung reached its end; `best`, `exact` and `own` of the search are then known.
         """
-        self.search.climbs = [Climb(_doubled(Rung(family, self.search.base))) for family in families]
-        while going := [climb for climb in self.search.climbs if not climb.ended]:
-            self._step(min(going, key=lambda climb: self.search.predict(climb.next) or 0.0))
-            if any(climb.rung for climb in self.search.climbs) and self._enough():
-                self._sharpen()
-                break
-        return any(climb.rung for climb in self.search.climbs)
+        search = self.search
+        search.climbs = [Climb(_doubled(Rung(family, search.base))) for family in families]
+        while (going := [climb for climb in search.climbs if not climb.ended]) and not self._enough():
+            lead = search.lead if any(climb.rung for climb in search.climbs) else None
+            if lead in going and lead.own <= BEST * search.tol:
+                # Only its own error is still to be made smaller.
+                going = [lead]
+            self._step(self._promising(going))
+        reached = any(climb.rung for climb in search.climbs)
+        if reached and not going:
+            # The error of each may turn out to be larger, so that the other leads.
+            for _ in search.climbs:
+                compare(search, search.lead)
+        return reached
+
+    def _promising(self, going: Sequence[Climb]) -> Climb:
+        """Return the climb whose next rung is the cheapest, of those that are not hopeless or cost little.
+
+        What costs little, beside the plan so far or what would be run else, may still tell that the other one is wrong.
+        """
+
+        def cost(climb: Climb) -> float:
+            return self.search.predict(climb.next) or 0.0
+
+        outlook = {climb.family: self._outlook(climb) for climb in going}
+        best = min(going, key=lambda climb: outlook[climb.family])
+        little = _LITTLE * max(self.search.pilots.spent, cost(best))
+        limit = _HOPEFUL * outlook[best.family]
+        return min((c for c in going if cost(c) <= little or outlook[c.family] <= limit), key=cost)
+
+    def _outlook(self, climb: Climb) -> float:
+        """Predict the seconds until the error of a climb is small enough, from its errors and costs so far."""
+        cost = self.search.predict(climb.next) or 0.0
+        if climb.rung is None or not np.isfinite(climb.own):
+            return cost
+        doublings = np.log2(climb.own / (BEST * self.search.tol)) / climb.rate
+        more = np.arange(max(np.ceil(doublings), 1.0))
+        return cost * float((_GROWTH**more).sum())
 
     def _enough(self) -> bool:
-        """Tell whether the error of the leading climb is small enough, and trusted."""
-        lead = self.search.lead
-        return lead.refined and lead.own <= BEST * self.search.tol and self._confirmed(self.search.best)
+        """Tell whether the error of the leading climb is small enough, and trusted.
 
-    def _sharpen(self) -> None:
-        """Refine the leading climb further while that costs little beside the plan so far.
-
-        What is known best leaves the more room for errors of cheaper rungs.
+        What is known better leaves the more room for errors of cheaper rungs: it is refined further while that costs
+        little beside the plan so far, and not so far where it costs more than that.
         """
-        search, lead = self.search, self.search.lead
-        while not lead.ended and lead.own > _CLEAR * search.tol:
-            cost = search.predict(lead.next)
-            if cost is None or cost > _LITTLE * search.pilots.spent:
-                break
-            self._step(lead)
+        search = self.search
+        if not any(climb.rung for climb in search.climbs):
+            return False
+        lead = search.lead
+        cost = np.inf if lead.ended else search.predict(lead.next) or 0.0
+        spent = search.pilots.spent
+        part = _CLEAR if cost <= _LITTLE * spent else BEST if cost <= _MUCH * spent else _COARSE
+        small = lead.refined and lead.own <= part * search.tol and (lead.ended or not lead.sudden)
+        return small and self._confirmed(search.best, part)
 
     def _step(self, climb: Climb) -> None:
         """Run the next rung of a climb and learn from it, or end the climb."""
+        self._reconsider(climb)
         rung = climb.next
         if (
             rung.elements > _LARGEST
@@ -110,10 +145,9 @@ class Ascent:
         if self._run(rung).ok:
             before = climb.own
             learn(self.search, climb)
-            climb.stalled = climb.stalled + 1 if climb.own > before * 2.0**-_STALLED else 0
+            climb.observe(before)
             climb.next = self._refined(climb)
             self._race(rung)
-            self._reconsider(climb)
         elif climb.rung is None and self.search.pilots.left > 0.0:
             climb.next = _doubled(rung)
         else:
@@ -158,25 +192,26 @@ class Ascent:
     def _reconsider(self, climb: Climb) -> None:
         """Go on with another family of the element where it is much nearer to what another element tells.
 
-        On the coarsest meshes what locks hardly changes, so that the wrong family may have been taken.
+        On coarse meshes what locks hardly changes, so that the wrong family may have been taken.
         """
-        lead, rung = self.search.lead, climb.rung
-        assert rung is not None
-        if lead.family.element == rung.family.element or rung.elements > _RECONSIDERED:
+        rung = climb.rung
+        others = [other for other in self.search.climbs if other.refined and not other.sudden and other is not climb]
+        if rung is None or rung.elements > _RECONSIDERED or not others:
             return
-        scale = scales(lead.exact)
+        judge = min(others, key=lambda other: other.own)
+        scale = scales(judge.exact)
         values = self.search.values(rung)
         assert values is not None
-        nearest = distance(values, lead.exact, scale)
-        if nearest <= _APART * lead.own:
+        nearest = distance(values, judge.exact, scale)
+        if nearest <= max(judge.own, self.search.tol):
             return
         nearest /= 2
         for family in self.search.families:
             if family.element == rung.family.element and family != rung.family:
                 other = replace(rung, family=family)
                 pilot = self.search.run(other, 2 * self._seconds(rung))
-                if pilot.ok and distance(pilot.values, lead.exact, scale) < nearest:
-                    nearest = distance(pilot.values, lead.exact, scale)
+                if pilot.ok and distance(pilot.values, judge.exact, scale) < nearest:
+                    nearest = distance(pilot.values, judge.exact, scale)
                     climb.restart(other)
 
     def _race(self, rung: Rung) -> None:
@@ -196,11 +231,11 @@ class Ascent:
             if not pilot.ok and (timing.stepping.explicit or not (first and first.explicit)):
                 self.search.timings.remove(timing)
 
-    def _confirmed(self, rung: Rung) -> bool:
+    def _confirmed(self, rung: Rung, part: float) -> bool:
         """Check the estimate with another element; if it is far off, half of that may be missing.
 
-        Its climb tells, or else it is run on the same mesh. There one of its families must agree, the one that is
-        refined before those that may lock or be weak here.
+        Its climb tells, or else it is run, on half the elements along each side and, if that is not near enough, on the
+        same mesh. There one of its families must agree, the one that is refined before those that may lock or be weak.
         """
         lead = self.search.lead
         scale = scales(lead.exact)
@@ -213,16 +248,21 @@ class Ascent:
         nearest = np.inf
         refined = {climb.family for climb in self.search.climbs}
         order = sorted(self.search.families, key=lambda f: (f.element == rung.family.element, f not in refined))
-        for family in order:
-            if nearest <= agreed or (nearest < np.inf and family.element == rung.family.element):
+        half = replace(rung, divisions=tuple((max(x // 2, 1), max(y // 2, 1)) for x, y in rung.divisions))
+        for family, mesh in product(order, (half, rung)):
+            if nearest <= max(agreed, 2 * part * self.search.tol):
+                break
+            if nearest < np.inf and family.element == rung.family.element:
                 break
             if family != rung.family:
-                pilot = self.search.run(replace(rung, family=family), 6 * self._seconds(rung))
-                if pilot.ok:
-                    nearest = min(nearest, distance(pilot.values, lead.exact, scale))
+                pilot = self.search.run(replace(mesh, family=family), 6 * self._seconds(rung))
+                off = distance(pilot.values, lead.exact, scale) if pilot.ok else np.inf
+                # Half of what the coarse mesh is off may be bearable: then the fine one need not be run.
+                if mesh == rung or off <= max(agreed, 2 * part * self.search.tol):
+                    nearest = min(nearest, off)
         if agreed < nearest < np.inf:
             lead.own = max(lead.own, nearest / 2)
-        return lead.own <= BEST * self.search.tol
+        return lead.own <= part * self.search.tol
 
     def _seconds(self, rung: Rung) -> float:
         pilot = self.search.pilots.known(self.search.choice(rung))
@@ -232,6 +272,12 @@ class Ascent:
         """Double the elements along the sides whose error dominates."""
         rung = climb.next
         errors = {at: side.error for at, side in climb.sides.items()}
+        sudden = [at for at, side in climb.sides.items() if side.sudden]
+        if sudden and climb.own <= BEST * self.search.tol:
+            # All that is left is to see whether these errors are as small as they seem.
+            for at in sudden:
+                rung = rung.scaled(at, Fraction(2)) or rung
+            return rung
         if np.isinf(climb.own) or max(errors.values()) <= _SMALL_SIDE * self.search.tol:
             return _doubled(rung)
         worst = max(errors.values())

@@ -7,6 +7,7 @@ import os
 import platform
 import time
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -86,11 +87,13 @@ class Costs:
     def __init__(self, rates: dict[Family, Rates], threads: int | None = None) -> None:
         self._rates = rates
         self._threads = threads
+        # A plan asks for the same ones again and again.
+        self._of = cache(self._of_kind)
 
     def threads(self, choice: Choice) -> int | None:
         """Return how many threads a choice is run on: 1 unless more are predicted to take clearly less time."""
         kind = "force" if choice.stepping is not None and choice.stepping.explicit else "iteration"
-        return self._threads if self._shared(kind, choice.rung) else 1
+        return self._threads if self._shared(kind, choice.rung.family, choice.rung.elements) else 1
 
     def ratio(self, rung: Rung, pilot: Pilot) -> float:
         """Return the cost of a rung relative to that of a pilot with the same stepping.
@@ -101,7 +104,7 @@ class Costs:
         old = pilot.choice.rung
         explicit = stepping is not None and stepping.explicit
         kind = "force" if explicit else "iteration"
-        ratio = self._of(kind, rung) / self._of(kind, old)
+        ratio = self._of(kind, rung.family, rung.elements) / self._of(kind, old.family, old.elements)
         if explicit:
             finest = [max(max(pair) for pair in r.divisions) for r in (rung, old)]
             ratio *= finest[0] / finest[1]
@@ -109,7 +112,7 @@ class Costs:
 
     def setup(self, rung: Rung) -> float:
         """Return the seconds to make the system of a rung."""
-        return self._of("setup", rung)
+        return self._of("setup", rung.family, rung.elements)
 
     def predict(self, rung: Rung, pilot: Pilot) -> float:
         """Return the seconds of a rung from a pilot of the same scene with the same stepping."""
@@ -122,19 +125,20 @@ class Costs:
         """Return about the seconds of some steps, or steps of load; other families cost as those most like them."""
         if rung.family not in self._rates:
             rung = replace(rung, family=THIN[-1] if rung.family.element == THIN[-1].element else CONTINUOUS)
-        work = self._of("force", rung) if explicit else _ITERATIONS * self._of("iteration", rung)
+        kind = "force" if explicit else "iteration"
+        work = self._of(kind, rung.family, rung.elements) * (1.0 if explicit else _ITERATIONS)
         return self.setup(rung) + steps * work
 
-    def _of(self, kind: str, rung: Rung) -> float:
-        shared = kind != "setup" and self._shared(kind, rung)
-        return self._family(rung).at(f"{kind}_shared" if shared else kind, rung.elements)
+    def _of_kind(self, kind: str, family: Family, elements: int) -> float:
+        shared = kind != "setup" and self._shared(kind, family, elements)
+        return self._family(family).at(f"{kind}_shared" if shared else kind, elements)
 
-    def _shared(self, kind: str, rung: Rung) -> bool:
-        rates = self._family(rung)
-        return self._threads != 1 and rates.at(f"{kind}_shared", rung.elements) < _GAIN * rates.at(kind, rung.elements)
+    def _shared(self, kind: str, family: Family, elements: int) -> bool:
+        rates = self._family(family)
+        return self._threads != 1 and rates.at(f"{kind}_shared", elements) < _GAIN * rates.at(kind, elements)
 
-    def _family(self, rung: Rung) -> Rates:
-        return self._rates.get(rung.family, self._rates[CONTINUOUS])
+    def _family(self, family: Family) -> Rates:
+        return self._rates.get(family, self._rates[CONTINUOUS])
 
 
 def calibrated(folder: Path | None = None, threads: int | None = None) -> Costs:

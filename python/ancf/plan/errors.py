@@ -14,6 +14,8 @@ Values = Sequence[FloatArray]
 RATES = (0.5, 2.0)
 """Rates of convergence are taken to lie here: a lower one is no convergence, a higher one may be an accident."""
 UNKNOWN_RATE = 1.0
+_SLOWEST, _FASTEST, _SUDDEN = 1.0, 3.0, 5.0
+"""Rates of steady convergence, and the one beyond which differences are small by accident."""
 SAFETY = 1.2
 
 
@@ -44,6 +46,26 @@ class Side:
 
     difference: float
     rate: float | None
+
+    def rate_to(self, after: float) -> float | None:
+        """Return the rate with which the difference shrinks to the next one; None if that cannot be told.
+
+        What is small by accident is left out: then the rate is the mean of two refinements.
+        """
+        if not 0 < self.difference < np.inf or not 0 < after < np.inf:
+            return None
+        rate = float(np.log2(self.difference / after))
+        return rate if self.rate is None or not self.sudden else 0.5 * (self.rate + rate)
+
+    @property
+    def sudden(self) -> bool:
+        """Whether the difference shrank too fast to be believed."""
+        return self.rate is not None and self.rate > _SUDDEN
+
+    @property
+    def steady(self) -> bool:
+        """Whether the difference shrank as it does where elements converge, as far as is known."""
+        return self.rate is None or _SLOWEST <= self.rate <= _FASTEST
 
     @property
     def error(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from ancf.bodies import NODAL_VECTORS, Plate
@@ -53,7 +54,7 @@ class Rung:
     family: Family
     divisions: tuple[tuple[int, int], ...]
 
-    @property
+    @cached_property
     def elements(self) -> int:
         """How many elements there are."""
         return sum(x * y for x, y in self.divisions)
@@ -90,9 +91,10 @@ class Stepping:
         """Whether the highest frequency limits the step."""
         return self.method in ("verlet", "rk")
 
-    def like(self, other: Stepping) -> bool:
-        """Tell whether it is of the same method and control as another one."""
-        return (self.method, self.step is None, self.reuse) == (other.method, other.step is None, other.reuse)
+    @property
+    def kind(self) -> tuple[Method, bool, bool]:
+        """Method and control, without the length or the tolerance."""
+        return self.method, self.step is None, self.reuse
 
     def tighter(self) -> Stepping:
         """Return one of at most a quarter of the error."""

@@ -43,7 +43,7 @@ def learn(search: Search, climb: Climb) -> None:
             old = before.get(side)
             rate = old.rate if old else None
             if old is not None and side in refined:
-                rate = _rate(old.difference, difference)
+                rate = old.rate_to(difference)
             climb.sides[side] = Side(difference, rate)
     else:
         coarse = search.values(last)
@@ -53,14 +53,33 @@ def learn(search: Search, climb: Climb) -> None:
         share = sum(expected.values())
         for side in refined:
             part = total * expected.get(side, 0.0) / share if share else total
-            climb.sides[side] = Side(part, _rate(before[side].difference, part) if side in before else None)
+            climb.sides[side] = Side(part, before[side].rate_to(part) if side in before else None)
     climb.rung, climb.exact, climb.refined = rung, values, last is not None
     # Nothing is known of a side along which no coarser rung reached its end.
     known = all(side in climb.sides for side in rung.sides())
     climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
-    if last is not None and refined:
+    if last is not None and refined and all(climb.sides[side].steady for side in refined if side in climb.sides):
         _extrapolate(search, climb, last, scale, refined)
         _agree(search, climb, scale)
+
+
+def compare(search: Search, climb: Climb) -> None:
+    """Compare the finest rung of a climb that ended too early with its neighbours that are coarser along one side.
+
+    Where both sides were refined at once what they change may have cancelled.
+    """
+    rung = climb.rung
+    values = None if rung is None else search.values(rung)
+    if rung is None or values is None:
+        return
+    scale = scales(values)
+    for side in rung.sides():
+        half = rung.scaled(side, Fraction(1, 2))
+        pilot = None if half is None else search.run(half, search.pilots.left / 2)
+        if pilot is not None and pilot.ok:
+            old = climb.sides.get(side)
+            climb.sides[side] = Side(distance(values, pilot.values, scale), old.rate if old else None)
+    climb.own = max(climb.own, sum(side.error for side in climb.sides.values()))
 
 
 def _extrapolate(
@@ -70,7 +89,7 @@ def _extrapolate(
     rates = [climb.sides[side].rate for side in refined]
     known = [rate for rate in rates if rate is not None]
     coarse = search.values(last)
-    if coarse is None or len(known) < len(rates) or min(known) < RATES[0] * 2:
+    if coarse is None or len(known) < len(rates):
         return
     factor = 1.0 / (2.0 ** min(*known, RATES[1]) - 1.0)
     values = climb.exact
@@ -90,9 +109,3 @@ def _agree(search: Search, climb: Climb, scale: Sequence[float]) -> None:
 def _count(rung: Rung, side: tuple[int, int]) -> int:
     body, axis = side
     return rung.divisions[body][axis]
-
-
-def _rate(before: float, after: float) -> float | None:
-    if not 0 < before < np.inf or not 0 < after < np.inf:
-        return None
-    return float(np.log2(before / after))

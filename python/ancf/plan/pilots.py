@@ -84,6 +84,7 @@ class Pilots:
         self._started = self._clock()
         self._budget = budget
         self._done: dict[Choice, Pilot] = {}
+        self.runs = 0
         self.interrupted = False
 
     @property
@@ -128,21 +129,16 @@ class Pilots:
         """
         if choice in self._done and (self._done[choice].ok or self._done[choice].outcome != _SLOW):
             return self._done[choice]
+        self.runs += 1
         pilot = self._run(choice, limit if self.left > 0.0 else 0.0)
         self._done[choice] = pilot
         return pilot
 
-    def again(self, pilot: Pilot) -> Pilot:
-        """Repeat a short run a few times and keep the shortest time: single ones are noisy."""
-        limit = time.perf_counter() + _REPEATS_FOR
-        for _ in range(_REPEATS):
-            if time.perf_counter() > limit or self.left <= 0.0:
-                break
-            repeated = self._run(pilot.choice, np.inf)
-            if repeated.ok and repeated.seconds < pilot.seconds:
-                pilot = repeated
-                self._done[pilot.choice] = pilot
-        return pilot
+    def again(self, pilot: Pilot) -> None:
+        """Repeat a run and keep the shorter time: the first one also fills the caches of the processor."""
+        repeated = self._run(pilot.choice, np.inf)
+        if repeated.ok and repeated.seconds < pilot.seconds:
+            self._done[pilot.choice] = repeated
 
     def _run(self, choice: Choice, limit: float) -> Pilot:
         threads = self._costs.threads(choice) if self._costs else self.threads
@@ -179,4 +175,3 @@ class Pilots:
 
 
 _SLOW = "slower than others"
-_REPEATS, _REPEATS_FOR = 3, 0.1

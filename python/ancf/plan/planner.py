@@ -146,7 +146,7 @@ def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: fl
         descent = Descent(search, worth)
         descent.down()
         _choose(search)
-        descent.near()
+        descent.down()
         descent.settle()
         return _answer(search)
     except KeyboardInterrupt:

@@ -72,6 +72,9 @@ class Search:
     climbs: list[Climb] = field(default_factory=list)
     in_time: float = 0.0
     late: Values | None = None
+    _alike: dict[tuple[Family, int, Stepping | None], Pilot | None] = field(default_factory=dict)
+    _of_kind: dict[tuple[str, bool, bool] | None, list[Pilot]] = field(default_factory=dict)
+    _runs: int = -1
 
     def __post_init__(self) -> None:
         """Allow the steppings that are good enough; those that replace them are allowed later."""
@@ -155,17 +158,20 @@ class Search:
         return self.costs.predict(rung, timing.pilot) if predicted is None else predicted
 
     def _like(self, rung: Rung, stepping: Stepping | None) -> Pilot | None:
-        def alike(other: Stepping | None) -> bool:
-            return other == stepping or (other is not None and stepping is not None and other.like(stepping))
-
-        def unlike(pilot: Pilot) -> float:
-            other = pilot.choice.rung
-            differs = _OTHER * (other.family != rung.family) + _LENGTH * (pilot.choice.stepping != stepping)
-            return float(abs(np.log(other.elements / rung.elements)) + differs)
-
-        like = [pilot for pilot in self.pilots.done if pilot.ok and alike(pilot.choice.stepping)]
-
-        return min(like, key=unlike, default=None)
+        """Return the pilot with the same kind of stepping whose rung and steps are the most like others."""
+        if self._runs != self.pilots.runs:
+            self._runs = self.pilots.runs
+            self._alike.clear()
+            self._of_kind = {}
+            for pilot in self.pilots.done:
+                if pilot.ok:
+                    self._of_kind.setdefault(_kind(pilot.choice.stepping), []).append(pilot)
+        # Of a rung only its family and elements matter.
+        key = (rung.family, rung.elements, stepping)
+        if key not in self._alike:
+            pilots = self._of_kind.get(_kind(stepping), [])
+            self._alike[key] = min(pilots, key=lambda pilot: _unlike(pilot.choice, rung, stepping), default=None)
+        return self._alike[key]
 
     def choice(self, rung: Rung) -> Choice:
         """Return the rung with the stepping that is predicted to be the cheapest."""
@@ -218,6 +224,16 @@ class Search:
             for choice, error in errors.items()
             if error <= self.allowance and (pilot := self.pilots.known(choice)) is not None
         ]
+
+
+def _kind(stepping: Stepping | None) -> tuple[str, bool, bool] | None:
+    return None if stepping is None else stepping.kind
+
+
+def _unlike(choice: Choice, rung: Rung, stepping: Stepping | None) -> float:
+    """Return how little the cost of a choice says of that of a rung with some steps."""
+    differs = _OTHER * (choice.rung.family != rung.family) + _LENGTH * (choice.stepping != stepping)
+    return float(abs(np.log(choice.rung.elements / rung.elements)) + differs)
 
 
 def _shortening(found: Stepping, longer: Stepping) -> float:

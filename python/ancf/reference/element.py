@@ -53,6 +53,11 @@ class Element(ABC):
     def energies(self) -> tuple[StrainEnergy, ...]:
         """Return the elastic energies: membrane and bending, or the one of a solid."""
 
+    def split(self, energies: tuple[StrainEnergy, ...], e: FloatArray) -> tuple[float, float]:
+        """Membrane and bending energy, J, of `energies` for nodal coordinates e of shape (e, a, 3)."""
+        membrane, bending = (float(energy.energy(e).sum()) for energy in energies)
+        return membrane, bending
+
     def mass(self) -> FloatArray:
         """Mass of each element, int rho N_a N_b dV, kg, shape (elements, a, a).
 

@@ -174,7 +174,7 @@ class EnergyMomentum:
 
 @dataclass(frozen=True)
 class Verlet:
-    """Velocity Verlet with the consistent mass matrix: explicit; Hairer, Lubich and Wanner (2003)."""
+    """Velocity Verlet with the mass matrix of the model: explicit; Hairer, Lubich and Wanner (2003)."""
 
     def advance(self, equations: Equations, start: State, t: float) -> tuple[State, int]:
         """Make one step to the time t; return its end and the number of Newton iterations, none."""

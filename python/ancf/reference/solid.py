@@ -34,8 +34,24 @@ class Solid(Element):
 
     def energies(self) -> tuple[StrainEnergy, ...]:
         """Energy of St. Venant and Kirchhoff, Dufva and Shabana (2005), (13), (25)."""
-        rule = product(gauss(4), gauss(4), gauss(2))
+        rule = self._rule()
         return (self.sampled(self._gradients(rule), SOLID, SOLID, self.material.solid(), self._volume(rule)),)
+
+    def split(self, energies: tuple[StrainEnergy, ...], e: FloatArray) -> tuple[float, float]:
+        """Membrane and bending energy, J: bending is that of the part of the strain that is odd in z."""
+        (energy,) = energies
+        upper = self._height(self._rule()) > 0
+        strain = energy.strain(e).reshape(len(e), len(upper), -1)
+        odd = (strain[:, upper] - strain[:, ~upper]) / 2
+        part = np.zeros_like(strain)
+        part[:, upper], part[:, ~upper] = odd, -odd
+        m = part.reshape(len(e), -1)
+        bending = float(einsum("em,emn,en->", m, energy.weight, m, optimize=True)) / 2
+        return float(energy.energy(e).sum()) - bending, bending
+
+    def _rule(self) -> Rule:
+        """Points of the strain: two layers, the places in the plane in the same order."""
+        return product(gauss(4), gauss(4), gauss(2))
 
     def _height(self, rule: Rule) -> FloatArray:
         """Return z in [-h/2, h/2] at the points of a rule."""

@@ -86,8 +86,8 @@ class Thin(Element):
         Pi = projection(BILINEAR) + normal * (projection(PROJECTED) - projection(BILINEAR))
         for power, share in zip(SQUARES, squares, strict=False):
             Pi = Pi + share * projection(([], [], [power]))
-        delta = np.minimum(1, (self.thickness / self._sides().max(axis=0)) ** 2)
-        weight = (1 - delta) * Pi.swapaxes(1, 2) @ energy.weight @ Pi + delta * energy.weight
+        own = self._sampled_part(energy.weight, normal**2)
+        weight = Pi.swapaxes(1, 2) @ (energy.weight - own) @ Pi + own
         return StrainEnergy(energy.table, energy.measure, weight, energy.reference)
 
     def bending_energy(self) -> StrainEnergy:
@@ -140,6 +140,31 @@ class Thin(Element):
         wave = (12 if self._twist() else 1) / np.stack([sides.max(axis=0), *sides]) ** 4
         with np.errstate(divide="ignore"):
             return np.asarray(np.minimum(1, self.thickness**2 / 12 * wave / curvature))
+
+    def _sampled_part(self, weight: FloatArray, smooth: FloatArray) -> FloatArray:
+        """Part of the weight W for the strain as it is, not projected, shape (elements, m, m).
+
+        A share delta = min(1, (h / l)^2), l the larger side, of all. Besides, where lines along x are curved within the
+        surface, a share of the stiffness that E_yy has where no stress holds the other components, and likewise of
+        E_xx: (k w)^2, k the mean geodesic curvature of these lines, w the side across them, times the share `smooth` of
+        what is not bilinear. Without it lines across a curved strip of one element may stretch to cubics for nothing,
+        which takes part of the bending strain along the strip away.
+        """
+        sides = self._sides()
+        delta = np.minimum(1, (self.thickness / sides.max(axis=0)) ** 2)
+        rule = square(gauss(3))
+        vectors = self._reference_vectors(rule)
+        along, second = vectors[..., :2, :], vectors[..., 2:4, :]
+        across = np.cross(normal(vectors)[..., None, :], along)
+        curved = einsum("esvi,esvi->esv", second, across) / np.linalg.norm(across, axis=-1)
+        geodesic = einsum("s,esv->ve", rule.weights, curved / np.linalg.norm(along, axis=-1) ** 2)
+        share = np.zeros((*weight.shape[:1], weight.shape[1] // 3, 3))
+        for component in range(2):
+            bent = geodesic[1 - component, :, None, None] * sides[component]
+            share[..., component] = np.minimum(1 - delta, smooth * bent**2)[..., 0]
+        compliance = np.diagonal(np.linalg.inv(weight), axis1=1, axis2=2)
+        own = share.reshape(compliance.shape) / compliance
+        return np.asarray(delta * weight + own[:, :, None] * np.eye(weight.shape[1]))
 
     def _twist(self) -> bool:
         """Whether r_xy is a nodal vector: the functions are bicubic."""

@@ -1,7 +1,7 @@
 //! The global system of a model: mass, forces and tangent, and the linear equations for its free coordinates.
 //!
 //! `numbering` gives the free coordinates their numbers, `columns` the entries of the tangent their places; `parts` cuts
-//! the model into tasks and `scatter` sums what their elements give. `loads` holds what acts on the model (`follower` what turns with it), `mass` its inertia. `forces` evaluates elements
+//! the model into tasks, `scatter` sums what their elements give, `tangent` their tangents. `loads` holds what acts on the model (`follower` what turns with it), `mass` its inertia. `forces` evaluates elements
 //! and sums them, `solve` factorises the tangent and solves with it.
 
 mod columns;
@@ -13,6 +13,7 @@ mod numbering;
 mod parts;
 mod scatter;
 mod solve;
+mod tangent;
 mod totals;
 
 use std::sync::Arc;

@@ -7,18 +7,23 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::element::{Portion, tangent_size};
+use crate::element::Portion;
+use crate::lanes::arch;
 use crate::linear::{LinearError, Pattern};
-use crate::strain::packed;
 
 use super::columns::Columns;
 use super::numbering::{Node, Numbering};
-use super::parts::{Corner, Part, Slots};
+use super::parts::Part;
+use super::tangent::Tangents;
 
 /// Nodes whose forces are put in their places by one task.
 const TASK: usize = 4096;
+
+/// The registers by which tangents are added: two of four numbers and one number are a column of a node with three vectors.
+const COLUMN: usize = 4;
 
 /// Where each entry of element forces and tangents goes.
 #[derive(Clone, Debug)]
@@ -29,6 +34,7 @@ pub(super) struct Scatter {
     place: Vec<usize>,
     columns: Columns,
     parts: Vec<Part>,
+    arch: Arch,
 }
 
 /// What a part gives beside its own columns and forces.
@@ -60,7 +66,7 @@ impl Scatter {
         let (columns, pattern) = Columns::new(numbering)?;
         let parts = Part::cut(numbering, &columns);
         let (nodes, place) = (numbering.nodes.clone(), numbering.place.clone());
-        Ok(Self { pattern: Arc::new(pattern), nodes, place, columns, parts })
+        Ok(Self { pattern: Arc::new(pattern), nodes, place, columns, parts, arch: arch(COLUMN) })
     }
 
     /// The pattern of the tangent.
@@ -127,7 +133,7 @@ impl Scatter {
         }
         energy.clear();
         rates.clear();
-        let mut slots = part.slots.iter();
+        let mut slots = part.slots.as_slice();
         *time = [Duration::ZERO, start.elapsed()];
         for (block, elements) in part.elements.iter().enumerate() {
             let (mut block_energy, mut block_rates) = ([0.0; 2], [0.0; 2]);
@@ -135,74 +141,29 @@ impl Scatter {
                 let evaluated = Instant::now();
                 time[0] += evaluated - start;
                 let count = portion.elements.len();
-                for (element, slots) in slots.by_ref().take(count).enumerate() {
+                let own;
+                (own, slots) = slots.split_at(count);
+                for (element, slots) in own.iter().enumerate() {
                     for i in 0..2 {
                         block_energy[i] += portion.energy[element][i];
                         block_rates[i] += portion.rates[element][i];
                     }
                     let size = portion.force.len() / count;
-                    let own = &portion.force[element * size..(element + 1) * size];
-                    for (corner, own) in slots.corners.iter().zip(own.chunks_exact(size / 4)) {
+                    let forces = &portion.force[element * size..(element + 1) * size];
+                    for (corner, forces) in slots.corners.iter().zip(forces.chunks_exact(size / 4)) {
                         let target = if corner.inside { &mut *force } else { &mut border[1] };
-                        add(&mut target[corner.first[1] as usize..], own);
+                        add(&mut target[corner.first[1] as usize..], forces);
                     }
-                    if !portion.tangent.is_empty() {
-                        let size = tangent_size(size / 3);
-                        let tangent = &portion.tangent[element * size..(element + 1) * size];
-                        self.add_tangent(slots, tangent, values, &mut border[0]);
-                    }
+                }
+                if !portion.tangent.is_empty() {
+                    let (columns, tangents, border) = (&self.columns, portion.tangent, &mut border[0]);
+                    self.arch.dispatch(Tangents { columns, slots: own, tangents, values, border });
                 }
                 start = Instant::now();
                 time[1] += start - evaluated;
             });
             energy.push(block_energy);
             rates.push(block_rates);
-        }
-    }
-
-    /// Adds the tangent of an element to the columns of a part and of its border.
-    fn add_tangent(&self, slots: &Slots, tangent: &[f64], values: &mut [f64], border: &mut [f64]) {
-        let pairs = tangent.len() / 10;
-        for r in 0..4 {
-            for c in 0..=r {
-                let pair = &tangent[packed(c, r) * pairs..][..pairs];
-                let [first, second] = [&slots.corners[c], &slots.corners[r]];
-                let transposed = second.place < first.place;
-                let (early, late) = if transposed { (second, first) } else { (first, second) };
-                let target = if early.inside { &mut *values } else { &mut *border };
-                let target = &mut target[early.first[0] as usize..];
-                let offset = (r != c).then(|| slots.offsets[c + r * r.saturating_sub(1) / 2] as usize);
-                match (pairs, early.free, late.free) {
-                    (81, 9, 9) => add_whole::<9>(early, offset, pair, transposed, target),
-                    (144, 12, 12) => add_whole::<12>(early, offset, pair, transposed, target),
-                    _ => self.add_free([early, late], offset, pair, transposed, target),
-                }
-            }
-        }
-    }
-
-    /// Adds the entries that a pair of corners has in the columns of the earlier node, some of whose coordinates, or of
-    /// the later node, are fixed. `offset` is where the rows of the later node begin below the diagonal block; none for
-    /// the diagonal block itself.
-    fn add_free(
-        &self,
-        [early, late]: [&Corner; 2],
-        offset: Option<usize>,
-        pair: &[f64],
-        transposed: bool,
-        target: &mut [f64],
-    ) {
-        let [column, other] = [early, late].map(|corner| &self.columns.of[corner.place as usize]);
-        let [columns, rows] = [column, other].map(|node| &self.columns.free[node.free.clone()]);
-        let [by_row, by_column] = if transposed { [pair.len().isqrt(), 1] } else { [1, pair.len().isqrt()] };
-        for (j, &own) in columns.iter().enumerate() {
-            let (begin, rows) = match offset {
-                Some(offset) => (column.begin(j) + columns.len() - j + offset, rows),
-                None => (column.begin(j), &rows[j..]),
-            };
-            for (sum, &row) in target[begin..].iter_mut().zip(rows) {
-                *sum += pair[own as usize * by_column + row as usize * by_row];
-            }
         }
     }
 
@@ -240,33 +201,12 @@ impl Scatter {
     }
 }
 
-/// Does all of `count` tasks, in parallel if there are several: each is given to whoever is free, not several at once.
+/// Does all of `count` tasks, in parallel if there are several.
 fn each<T: Send>(count: usize, tasks: impl Iterator<Item = T>, work: impl Fn(T) + Send + Sync) {
     if count == 1 {
         tasks.for_each(work);
     } else {
-        tasks.collect::<Vec<_>>().into_par_iter().with_max_len(1).for_each(work);
-    }
-}
-
-/// Adds `SIDE` x `SIDE` entries as `Scatter::add_free` does, where no coordinate is fixed.
-#[inline]
-fn add_whole<const SIDE: usize>(
-    early: &Corner,
-    offset: Option<usize>,
-    pair: &[f64],
-    transposed: bool,
-    target: &mut [f64],
-) {
-    let pair: &[[f64; SIDE]] = pair.as_chunks().0;
-    let mut begin = offset.map_or(0, |offset| SIDE + offset);
-    for j in 0..SIDE {
-        // What lies above the diagonal is zero, and may be added to the end of the column before.
-        let target = target[begin..].first_chunk_mut::<SIDE>().expect("rows of the node");
-        for i in 0..SIDE {
-            target[i] += if transposed { pair[i][j] } else { pair[j][i] };
-        }
-        begin += early.length as usize - j - 1;
+        tasks.collect::<Vec<_>>().into_par_iter().for_each(work);
     }
 }
 

@@ -20,9 +20,9 @@ pub struct Timers {
 /// Strain energy, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StrainEnergy {
-    /// From membrane strain; of solid elements, whose energy is not split, all of it.
+    /// From membrane strain; of solid elements all that is not bending.
     pub membrane: f64,
-    /// From curvature.
+    /// From curvature; of solid elements from the part of the strain that is odd across the thickness.
     pub bending: f64,
 }
 

@@ -58,7 +58,7 @@ impl Memory {
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp4";
+const MAGIC: &[u8; 8] = b"ancf-cp5";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -81,7 +81,8 @@ impl Checkpoint {
         self.fingerprint.check(&Fingerprint::of(system.model(), options))
     }
 
-    /// The checkpoint, and the outputs so far, as bytes for a file; numbers in 8 bytes, lowest first.
+    /// The checkpoint, and the outputs so far, as bytes for a file; numbers in 8 bytes, lowest first. At the end is a checksum
+    /// of all the others, CRC-32, in 4 bytes.
     pub(super) fn to_bytes(&self, states: &[State]) -> Vec<u8> {
         let mut words = Words(MAGIC.to_vec());
         self.write(&mut words);
@@ -89,6 +90,8 @@ impl Checkpoint {
         for state in states {
             words.state(state);
         }
+        let checksum = crc32fast::hash(&words.0);
+        words.0.extend(checksum.to_le_bytes());
         words.0
     }
 
@@ -133,16 +136,22 @@ impl Checkpoint {
     ///
     /// # Errors
     ///
-    /// They must be those of a whole checkpoint.
+    /// They must be those of a whole checkpoint, as they were written.
     pub fn from_bytes(bytes: &[u8]) -> Result<(Self, Vec<State>), InputError> {
-        let broken = || InputError::new("checkpoint", format!("{} bytes", bytes.len()), "a whole checkpoint file");
+        let broken = |given: String| InputError::new("checkpoint", given, "a whole checkpoint file of this version");
+        let other = || broken(format!("{} bytes", bytes.len()));
+        let inner = bytes.strip_prefix(MAGIC).ok_or_else(other)?;
+        let (inner, checksum) = inner.split_last_chunk::<4>().ok_or_else(other)?;
+        if crc32fast::hash(&bytes[..bytes.len() - checksum.len()]) != u32::from_le_bytes(*checksum) {
+            return Err(broken("damaged: its checksum is that of other bytes".to_owned()));
+        }
         let read = |bytes| {
             let mut words = Reader(bytes);
             let checkpoint = Self::read(&mut words)?;
             let states = (0..words.count()?).map(|_| words.state()).collect::<Option<_>>()?;
             words.0.is_empty().then_some((checkpoint, states))
         };
-        bytes.strip_prefix(MAGIC).and_then(read).ok_or_else(broken)
+        read(inner).ok_or_else(other)
     }
 
     fn read(words: &mut Reader<'_>) -> Option<Self> {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use crate::linear::dot;
 use crate::nonlinear::Failure;
 use crate::observe::Observer;
 
@@ -66,7 +67,7 @@ impl Integrator for EnergyMomentum {
         next.a.copy_from_slice(&mean.a);
         equations.prescribe(next);
         equations.load_mean(&mut mean, &now.q);
-        next.work = now.work + h * mean.external.iter().zip(&mean.v).map(|(force, v)| force * v).sum::<f64>();
+        next.work = now.work + h * dot(&mean.external, &mean.v);
         next.dissipated = now.dissipated + h * mean.damping;
         (next.external, next.damping) = (mean.external, mean.damping);
         next.negative_pivots = mean.negative_pivots;

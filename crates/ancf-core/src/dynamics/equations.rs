@@ -31,6 +31,15 @@ impl<'a> Equations<'a> {
         power
     }
 
+    /// The force `F` without velocities.
+    pub fn force_at_rest(&mut self, t: f64, q: &[f64], force: &mut [f64]) {
+        self.system.external_force(q, t, &mut self.work);
+        self.system.internal_force(q, force);
+        for (force, load) in force.iter_mut().zip(&self.work) {
+            *force -= load;
+        }
+    }
+
     /// The elastic force and that of damping, and the power that damping takes at the velocities `v`.
     fn internal(&mut self, at: At<'_>, v: &[f64], force: &mut [f64]) -> f64 {
         let motion = self.system.is_damped().then_some(Motion { velocity: v, rate: 0.0, viscosity: 0.0 });
@@ -76,17 +85,19 @@ impl<'a> Equations<'a> {
         if !force.iter().all(|f| f.is_finite()) {
             return Err(Failure::Overflow { t: at.t });
         }
-        let mut right: Vec<f64> = force.iter().map(|f| -f).collect();
+        for (right, force) in self.work.iter_mut().zip(&force) {
+            *right = -force;
+        }
         self.prescribe(at);
         if self.moved().next().is_some() {
             // Free coordinates see the inertia of moved ones as a force.
-            let mut moved = vec![0.0; right.len()];
+            let mut moved = vec![0.0; force.len()];
             for i in self.moved() {
                 moved[i] = -at.a[i];
             }
-            self.inertia.add_product(&moved, &mut right);
+            self.inertia.add_product(&moved, &mut self.work);
         }
-        self.inertia.solve(&right, &mut at.a);
+        self.inertia.solve(&self.work, &mut at.a);
         self.add_reactions(&force, at);
         Ok(())
     }

@@ -15,12 +15,11 @@ pub(super) struct Inertia {
 
 /// Components whose free nodal vectors are the same.
 struct Part {
-    components: Vec<usize>,
+    components: [bool; 3],
     vectors: Vec<usize>,
-    /// The coordinates, vector by vector.
-    places: Vec<usize>,
     factorization: Factorization,
-    right: Vec<f64>,
+    /// Room for the components of the vectors.
+    right: Vec<[f64; 4]>,
 }
 
 impl Inertia {
@@ -39,16 +38,13 @@ impl Inertia {
             let of_component = system.free().iter().filter(|coordinate| *coordinate % 3 == component);
             let vectors: Vec<usize> = of_component.map(|coordinate| coordinate / 3).collect();
             if let Some(part) = parts.iter_mut().find(|part| part.vectors == vectors) {
-                part.components.push(component);
+                part.components[component] = true;
             } else {
                 let factorization = factorize(&matrix, &vectors)
                     .map_err(|e| Failure::from_linear(e, 0, |row| format!("nodal vector {}", vectors[row])))?;
-                let (components, places, right) = (vec![component], Vec::new(), Vec::new());
-                parts.push(Part { components, vectors, places, factorization, right });
+                let right = vec![[0.0; 4]; vectors.len()];
+                parts.push(Part { components: [0, 1, 2].map(|c| c == component), vectors, factorization, right });
             }
-        }
-        for Part { components, vectors, places, .. } in &mut parts {
-            *places = vectors.iter().flat_map(|v| components.iter().map(move |c| 3 * v + c)).collect();
         }
         Ok(Self { matrix, parts, positions: system.positions().collect() })
     }
@@ -71,12 +67,18 @@ impl Inertia {
     /// Solves `M x = right` for the free coordinates; leaves the others of `x` as they are.
     pub fn solve(&mut self, right: &[f64], x: &mut [f64]) {
         for part in &mut self.parts {
-            let Part { components, places, factorization, right: packed, .. } = part;
-            packed.clear();
-            packed.extend(places.iter().map(|&place| right[place]));
-            factorization.solve_many(packed, components.len());
-            for (&place, value) in places.iter().zip(packed) {
-                x[place] = *value;
+            let Part { components, vectors, factorization, right: packed } = part;
+            for (packed, vector) in packed.iter_mut().zip(&*vectors) {
+                // What else there is of a vector is solved for, too, but not used.
+                packed[..3].copy_from_slice(&right[3 * vector..3 * vector + 3]);
+            }
+            factorization.solve_four(packed);
+            for (packed, vector) in packed.iter().zip(&*vectors) {
+                for (c, x) in x[3 * vector..3 * vector + 3].iter_mut().enumerate() {
+                    if components[c] {
+                        *x = packed[c];
+                    }
+                }
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Runge-Kutta methods, explicit and diagonally implicit, from their tableaux.
 
+use crate::linear::dot;
 use crate::nonlinear::Failure;
 use crate::observe::Observer;
 
@@ -140,7 +141,7 @@ impl Integrator for Tableau {
         let (mut work, mut dissipated) = (now.work, now.dissipated);
         for (i, stage) in stages.iter().enumerate() {
             let weight = h * self.weights().get(i).copied().unwrap_or(0.0);
-            work += weight * stage.external.iter().zip(&stage.v).map(|(force, v)| force * v).sum::<f64>();
+            work += weight * dot(&stage.external, &stage.v);
             dissipated += weight * stage.damping;
             let difference = weight - h * self.embedded[i];
             for ((error, v), a) in error.iter_mut().zip(&stage.v).zip(&stage.a) {

@@ -16,10 +16,11 @@ use super::state::Instantaneous;
 
 /// Explicit steps after which the limit of stability is estimated again.
 const LIMIT_EVERY: usize = 20;
-/// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates.
+/// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates. Fixed
+/// ones that are longer are compared with a precise estimate.
 const STABLE: f64 = 0.9;
-/// Change of the squared highest frequency in an iteration at which it is found: for a step that the limit may refuse, and
-/// where the share above covers what is missing.
+/// Change of the squared highest frequency in an iteration at which it is found: for a fixed step that the limit may refuse,
+/// and where the share above covers what is missing.
 const PRECISE: f64 = 1e-6;
 const ROUGH: f64 = 1e-2;
 
@@ -33,8 +34,8 @@ pub(super) struct Simulation<'a> {
     now: Instantaneous,
     next: Instantaneous,
     error: Vec<f64>,
-    /// What is allowed of the error of each coordinate: finite for positions only.
-    allowed: Vec<f64>,
+    /// The coordinates of positions, and what is allowed of the error of each.
+    allowed: Vec<(usize, f64)>,
     /// What belongs to the state `now` in a checkpoint, when checkpoints are wanted: a step that is being tried has
     /// changed the present ones already.
     accepted: (Controller, Memory, Counts),
@@ -48,11 +49,10 @@ impl<'a> Simulation<'a> {
     pub fn new(equations: Equations<'a>, options: &'a Options) -> Self {
         let n = equations.system.coordinates();
         let earlier = [equations.system.forces(), equations.system.factorizations()];
-        let mut allowed = vec![f64::INFINITY; n];
+        let mut allowed = Vec::new();
         if let Steps::Controlled(Tolerances { rtol, atol, .. }) = options.steps {
-            for coordinate in equations.inertia.positions().iter().flat_map(|a| 3 * a..3 * a + 3) {
-                allowed[coordinate] = atol + rtol * equations.newton.scale()[coordinate];
-            }
+            let coordinates = equations.inertia.positions().iter().flat_map(|a| 3 * a..3 * a + 3);
+            allowed.extend(coordinates.map(|i| (i, atol + rtol * equations.newton.scale()[i])));
         }
         Self {
             middles: Middles::new(equations.system.model()),
@@ -231,7 +231,7 @@ impl<'a> Simulation<'a> {
 
     /// The largest error of a position, relative to what is allowed in all.
     fn relative_error(&self) -> f64 {
-        let errors = self.error.iter().zip(&self.allowed).map(|(error, allowed)| error.abs() / allowed);
+        let errors = self.allowed.iter().map(|&(i, allowed)| self.error[i].abs() / allowed);
         // Not f64::max, which would drop a NaN.
         errors.fold(0.0, |worst, error| if error > worst || error.is_nan() { error } else { worst })
     }
@@ -241,9 +241,9 @@ impl<'a> Simulation<'a> {
         let power = 1.0 / (self.integrator.error_order() as f64 + 1.0);
         let share = 0.1 * tolerances.rtol.powf(power) / tolerances.rtol;
         let mut step = self.options.until;
-        for ((v, a), allowed) in self.now.v.iter().zip(&self.now.a).zip(&self.allowed) {
+        for &(i, allowed) in &self.allowed {
             let distance = share * allowed;
-            step = step.min(distance / v.abs()).min((2.0 * distance / a.abs()).sqrt());
+            step = step.min(distance / self.now.v[i].abs()).min((2.0 * distance / self.now.a[i].abs()).sqrt());
         }
         step
     }
@@ -255,9 +255,8 @@ impl<'a> Simulation<'a> {
     /// Belytschko, Liu and Moran, Nonlinear Finite Elements for Continua and Structures (2000), (6.2.21) for damping.
     fn limit(&mut self, precision: f64) -> Option<f64> {
         let limit = self.integrator.explicit_limit()?;
-        let Equations { system, inertia, .. } = &mut self.equations;
-        let omega = highest_frequency(system, inertia, self.now.t, &self.now.q, precision);
-        let damping = system.model().bodies().iter().map(|body| body.plate().material.damping());
+        let omega = highest_frequency(&mut self.equations, self.now.t, &self.now.q, precision);
+        let damping = self.equations.system.model().bodies().iter().map(|body| body.plate().material.damping());
         let ratio = damping.map(|d| 0.5 * (d.viscosity * omega + d.mass / omega)).fold(0.0, f64::max);
         Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
     }
@@ -270,7 +269,8 @@ impl<'a> Simulation<'a> {
         match self.options.steps {
             Steps::Fixed { force: true, .. } => {}
             Steps::Fixed { step, .. } => {
-                if let Some(limit) = self.limit(PRECISE).filter(|limit| step > *limit) {
+                let near = self.limit(ROUGH).is_some_and(|limit| step > STABLE * limit);
+                if near && let Some(limit) = self.limit(PRECISE).filter(|limit| step > *limit) {
                     return Err(Failure::StepAboveLimit { t: self.now.t, step, limit });
                 }
             }

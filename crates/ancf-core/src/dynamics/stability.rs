@@ -1,42 +1,54 @@
 //! The highest frequency of a model, which limits explicit steps.
 
-use crate::assembly::System;
-use crate::element::Want;
-use crate::linear::multiply_add;
+use crate::linear::dot;
 
-use super::inertia::Inertia;
+use super::equations::Equations;
 
 /// Iterations after which the estimate is taken as it is.
 const MOST: usize = 300;
 
+/// How far a state is moved for a difference of forces, relative to the size of the body: between what their curvature
+/// makes of longer ways and rounding of shorter ones.
+const DISTANCE: f64 = 1e-8;
+
 /// The highest frequency (rad/s) of small oscillations about a state, by Lanczos's iteration with `M^-1 K`, from below,
 /// taken as found when an iteration changes its square by less than `precision`, relative to it.
+///
+/// Products with the tangent `K` are differences of forces: few are needed, and they cost less than the tangent.
 ///
 /// # Source
 ///
 /// Golub and Van Loan, Matrix Computations (2013), 10.1, in the inner product of the mass matrix.
-pub(super) fn highest_frequency(system: &mut System, inertia: &mut Inertia, t: f64, q: &[f64], precision: f64) -> f64 {
-    let mut force = vec![0.0; q.len()];
-    let want = Want { mass: 0.0, stiffness: 1.0, previous: None };
-    system.assemble(q, t, want, &mut force);
-    let ((pattern, stiffness), free) = (system.tangent(), system.free());
-    let of_free = |x: &[f64], factor: f64| -> Vec<f64> { free.iter().map(|&k| factor * x[k]).collect() };
+pub(super) fn highest_frequency(equations: &mut Equations<'_>, t: f64, q: &[f64], precision: f64) -> f64 {
+    let n = q.len();
+    let mut force = vec![0.0; n];
+    equations.force_at_rest(t, q, &mut force);
     // Numbers without a pattern, so that no mode is missed; a linear congruential generator with Knuth's constants.
     let mut seed = 1_u64;
-    let mut x = vec![0.0; q.len()];
-    for &coordinate in free {
+    let mut v = vec![0.0; n];
+    for &coordinate in equations.system.free() {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        x[coordinate] = (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+        v[coordinate] = (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
     }
-    let mut momentum = vec![0.0; q.len()];
-    inertia.add_product(&x, &mut momentum);
-    let norm = x.iter().zip(&momentum).map(|(x, p)| x * p).sum::<f64>().sqrt();
-    let (mut v, mut p, mut p_before) = (of_free(&x, 1.0 / norm), of_free(&momentum, 1.0 / norm), vec![0.0; free.len()]);
-    let (mut diagonal, mut beside, mut beta, mut squared) = (Vec::new(), Vec::new(), 0.0, 0.0);
-    force.fill(0.0);
-    for _ in 0..MOST.min(free.len()) {
-        let mut r = vec![0.0; free.len()];
-        multiply_add::<1>(pattern, stiffness, &v, &mut r);
+    // Fixed coordinates rest: what forces and momenta have there is multiplied by zero.
+    let mut p = vec![0.0; n];
+    equations.inertia.add_product(&v, &mut p);
+    let mut beta = dot(&v, &p).sqrt();
+    let (mut p_before, mut r, mut moved) = (vec![0.0; n], p.clone(), vec![0.0; n]);
+    let (mut diagonal, mut beside, mut squared) = (Vec::new(), Vec::new(), 0.0);
+    for _ in 0..MOST.min(equations.system.free().len()) {
+        for ((v, p), r) in v.iter_mut().zip(&mut p).zip(&r) {
+            (*v, *p) = (*v / beta, r / beta);
+        }
+        let sizes = v.iter().zip(equations.newton.scale()).map(|(v, scale)| v.abs() / scale);
+        let distance = DISTANCE / sizes.fold(0.0, f64::max);
+        for ((moved, q), v) in moved.iter_mut().zip(q).zip(&v) {
+            *moved = q + distance * v;
+        }
+        equations.force_at_rest(t, &moved, &mut r);
+        for (r, force) in r.iter_mut().zip(&force) {
+            *r = (*r - force) / distance;
+        }
         let alpha = dot(&v, &r);
         for ((r, p), before) in r.iter_mut().zip(&p).zip(&p_before) {
             *r -= alpha * p + beta * before;
@@ -47,25 +59,15 @@ pub(super) fn highest_frequency(system: &mut System, inertia: &mut Inertia, t: f
         if (squared - last).abs() <= precision * squared.abs() {
             break;
         }
-        for (coordinate, r) in free.iter().zip(&r) {
-            force[*coordinate] = *r;
-        }
-        inertia.solve(&force, &mut x);
-        v = of_free(&x, 1.0);
+        equations.inertia.solve(&r, &mut v);
         beta = dot(&v, &r).max(0.0).sqrt();
         if beta <= f64::EPSILON * squared.abs() {
             break;
         }
         beside.push(beta);
-        v.iter_mut().for_each(|v| *v /= beta);
-        r.iter_mut().for_each(|r| *r /= beta);
-        p_before = std::mem::replace(&mut p, r);
+        p_before.copy_from_slice(&p);
     }
     squared.max(0.0).sqrt()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The highest eigenvalue of a symmetric tridiagonal matrix to a relative precision, by bisection: above it all pivots are

@@ -66,6 +66,7 @@ impl Stage<'_> {
             constant: self.constant.as_deref(),
             velocity: viscous.then_some(Velocity { rate: self.slope / self.length, at_origin: &self.velocity }),
             start: self.start,
+            stable: false,
         };
         let report = equations.newton.solve(equations.system, &problem, &mut at.q, Some(last), observer)?;
         for (i, moved) in equations.newton.distance_from_origin().iter().enumerate() {

@@ -1,5 +1,6 @@
 //! The state of a motion, and what is accumulated along it.
 
+use crate::linear::dot;
 use crate::observe::State;
 
 use super::equations::Equations;
@@ -28,9 +29,8 @@ pub(super) struct Instantaneous {
 impl Instantaneous {
     /// Work and dissipation of a step that comes from `from`, by the trapezoidal rule.
     pub fn accumulate(&mut self, from: &Self) {
-        let path = self.q.iter().zip(&from.q).map(|(to, from)| to - from);
-        let force = self.external.iter().zip(&from.external).map(|(to, from)| 0.5 * (to + from));
-        self.work = from.work + path.zip(force).map(|(path, force)| path * force).sum::<f64>();
+        let path: Vec<f64> = self.q.iter().zip(&from.q).map(|(to, from)| to - from).collect();
+        self.work = from.work + 0.5 * (dot(&path, &self.external) + dot(&path, &from.external));
         self.dissipated = from.dissipated + 0.5 * (self.t - from.t) * (self.damping + from.damping);
     }
 

@@ -49,7 +49,9 @@ impl Constants {
         let Section { material, thickness } = section;
         let membrane = thickness;
         let bending = thickness.powi(3) / 12.0;
-        let vectors = &combine_all(reference);
+        let mut combined = *reference;
+        combine_all(&mut combined);
+        let vectors = &combined;
         let surface = |gradients: &[Vector3<f64>]| plane_stress(material, &gradients[0], &gradients[1]);
         let mut values = Vec::new();
         for group in &tables.groups {
@@ -66,9 +68,13 @@ impl Constants {
                     let share = (thickness / longer).powi(2).min(1.0);
                     let followed = sides.map(|side| side / projection.followed);
                     let rough = RoughShares::new(shape_points(tables, vectors), thickness, followed);
-                    let points: Vec<_> =
+                    let curvature = geodesic_curvatures(shape_points(tables, vectors));
+                    let across = [0, 1].map(|a| rough.normal * (curvature[1 - a] * sides[a]).powi(2));
+                    let mut points: Vec<_> =
                         points::<Metric<Scalar>, N, 2, 3>(samples, (), vectors, |g| surface(g)).collect();
-                    points.iter().for_each(|point| point.append(share * membrane, &mut values));
+                    for point in &mut points {
+                        point.split(share, across).append(membrane, &mut values);
+                    }
                     let mut weight = DMatrix::from_fn(MODES, MODES, |k, l| {
                         let [first, second] = [&projection.modes[k], &projection.modes[l]];
                         let entry = first.basis.iter().map(|&(g, phi)| {
@@ -76,7 +82,7 @@ impl Constants {
                             let product = same_point.map_or(0.0, |(_, psi)| phi * psi) / samples.weights[g].powi(2);
                             product * points[g].weight[first.component][second.component]
                         });
-                        (1.0 - share) * membrane * entry.sum::<f64>()
+                        membrane * entry.sum::<f64>()
                     });
                     if rough.normal.min(rough.shear[0]).min(rough.shear[1]) < 1.0 {
                         let reduced = Projection::<N>::reduction(rough.normal.sqrt(), rough.shear.map(f64::sqrt));
@@ -164,6 +170,19 @@ impl RoughShares {
     }
 }
 
+/// The mean geodesic curvatures of the lines along x and along y, 1/m: how they bend within the surface.
+fn geodesic_curvatures(points: impl Iterator<Item = (f64, [Vector3<f64>; 5])>) -> [f64; 2] {
+    let (mut sums, mut total) = ([0.0; 2], 0.0);
+    for (weight, [x, y, xx, yy, _]) in points {
+        let n = x.cross(&y).normalize();
+        for (sum, (along, second)) in sums.iter_mut().zip([(x, xx), (y, yy)]) {
+            *sum += weight * second.dot(&n.cross(&along)) / along.norm().powi(3);
+        }
+        total += weight;
+    }
+    sums.map(|sum| sum / total)
+}
+
 /// Weights and derivatives of the reference position at the points at which curvature is sampled.
 fn shape_points<'a, const N: usize>(
     tables: &'a Tables<N>,
@@ -186,6 +205,23 @@ struct Point<const C: usize> {
     strain: [f64; C],
     /// Stiffness per thickness (or its third power over 12), times quadrature weight and stretch.
     weight: [[f64; C]; C],
+}
+
+impl Point<COMPONENTS> {
+    /// Takes from the weight a part for the strain as it is, and returns it; what is left is for the projected strain.
+    ///
+    /// It has `share` of all, and `across` of the stiffness that `E_xx` and `E_yy` have where no stress holds the other
+    /// components: that leaves no negative energy.
+    fn split(&mut self, share: f64, across: [f64; 2]) -> Self {
+        let whole = Matrix3::from(self.weight);
+        let compliance = whole.try_inverse().expect("a stiffness");
+        let mut part = share * whole;
+        for a in 0..2 {
+            part[(a, a)] += across[a].min(1.0 - share) / compliance[(a, a)];
+        }
+        self.weight = (whole - part).into();
+        Self { stretch: self.stretch, strain: self.strain, weight: part.into() }
+    }
 }
 
 impl<const C: usize> Point<C> {

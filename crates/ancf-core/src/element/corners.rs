@@ -30,36 +30,29 @@ pub(crate) fn distribute<T: Number>([sum, x, y, xy]: [T; 4]) -> [T; 4] {
     [left - at_left, right - at_right, right + at_right, left + at_left]
 }
 
-/// [`combine`] for each component of the nodal vectors of each kind; they are numbered corner by corner.
+/// [`combine`] in place, for each component of the nodal vectors of each kind; they are numbered corner by corner.
 #[inline(always)]
-pub(crate) fn combine_all<T: Number, const M: usize, const N: usize>(vectors: &[[T; M]; N]) -> [[T; M]; N] {
-    let kinds = N / 4;
-    let mut combined = *vectors;
-    for kind in 0..kinds {
-        for i in 0..M {
-            let parts = combine([0, 1, 2, 3].map(|corner| vectors[corner * kinds + kind][i]));
-            for corner in 0..4 {
-                combined[corner * kinds + kind][i] = parts[corner];
-            }
-        }
-    }
-    combined
+pub(crate) fn combine_all<T: Number, const M: usize, const N: usize>(vectors: &mut [[T; M]; N]) {
+    replace_all(vectors, combine);
 }
 
-/// [`distribute`] for each component of the nodal vectors of each kind.
+/// [`distribute`] in place, for each component of the nodal vectors of each kind.
 #[inline(always)]
-pub(crate) fn distribute_all<T: Number, const M: usize, const N: usize>(combined: &[[T; M]; N]) -> [[T; M]; N] {
+pub(crate) fn distribute_all<T: Number, const M: usize, const N: usize>(combined: &mut [[T; M]; N]) {
+    replace_all(combined, distribute);
+}
+
+#[inline(always)]
+fn replace_all<T: Number, const M: usize, const N: usize>(vectors: &mut [[T; M]; N], by: impl Fn([T; 4]) -> [T; 4]) {
     let kinds = N / 4;
-    let mut vectors = *combined;
     for kind in 0..kinds {
         for i in 0..M {
-            let parts = distribute([0, 1, 2, 3].map(|corner| combined[corner * kinds + kind][i]));
+            let parts = by([0, 1, 2, 3].map(|corner| vectors[corner * kinds + kind][i]));
             for corner in 0..4 {
                 vectors[corner * kinds + kind][i] = parts[corner];
             }
         }
     }
-    vectors
 }
 
 /// The shape functions that belong to sum and differences, from those of the corners; rounding left of what is zero by
@@ -67,7 +60,8 @@ pub(crate) fn distribute_all<T: Number, const M: usize, const N: usize>(combined
 pub(crate) fn functions<const N: usize>(row: &[f64; N], units: &[f64; 4]) -> [f64; N] {
     let unit = |a: usize| units[a % (N / 4)];
     let largest = (0..N).map(|a| row[a].abs() / unit(a)).fold(0.0, f64::max);
-    let combined = combine_all(&row.map(|x| [x]));
+    let mut combined = row.map(|x| [x]);
+    combine_all(&mut combined);
     array::from_fn(|a| {
         let [x] = combined[a];
         if x.abs() / unit(a) < 1e-13 * largest { 0.0 } else { 0.25 * x }

@@ -6,10 +6,12 @@ use crate::lanes::{Lanes, Vector, axpy};
 use crate::strain::{Form, Metric};
 
 use super::constants::Couplings;
-use super::kernel::{Batch, Sample, Tangent, Totals, point_constants};
+use super::kernel::{Batch, point_constants};
 use super::patch::combination;
 use super::projection::{MODES, POINTS, Projection, Row};
+use super::sample::Sample;
 use super::tables::Samples;
+use super::totals::{Tangent, Totals};
 
 /// Number of strain components.
 const C: usize = 3;

@@ -168,18 +168,23 @@ impl Factorization {
     ///
     /// When the last [`factorize`](Self::factorize) did not succeed, or the length is wrong.
     pub fn solve(&mut self, rhs: &mut [f64]) {
-        self.solve_many(rhs, 1);
+        self.solve_side_by_side::<1>(rhs.as_chunks_mut().0);
     }
 
-    /// Solves for `count` interleaved right-hand sides, (n, count): a scalar mass matrix with vectors in R3.
+    /// Solves for four interleaved right-hand sides, (n, 4): a scalar mass matrix with vectors in R3, and room for one more
+    /// component.
     ///
     /// # Panics
     ///
     /// As [`solve`](Self::solve).
-    pub fn solve_many(&mut self, rhs: &mut [f64], count: usize) {
+    pub fn solve_four(&mut self, rhs: &mut [[f64; 4]]) {
+        self.solve_side_by_side(rhs);
+    }
+
+    fn solve_side_by_side<const W: usize>(&mut self, rhs: &mut [[f64; W]]) {
         assert!(self.valid, "solve without a successful factorisation");
-        assert_eq!(rhs.len(), self.pattern.n() * count, "one number for each column and right-hand side");
-        self.solution.solve(&self.tree, &self.factor, rhs, count);
+        assert_eq!(rhs.len(), self.pattern.n(), "one number for each column and right-hand side");
+        self.solution.solve(&self.tree, &self.factor, rhs);
     }
 }
 

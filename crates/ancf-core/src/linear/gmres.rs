@@ -1,5 +1,7 @@
 //! GMRES: linear equations whose matrix is known only by what it does to a vector.
 
+use super::dot;
+
 /// Solves `A x = b` by minimising the residual over growing Krylov spaces, from `x = 0`.
 ///
 /// `apply(x, y)` sets `y = A x`. Ends when the residual is below `tolerance` times `b`, or after `most` products;
@@ -57,10 +59,6 @@ pub fn gmres(mut apply: impl FnMut(&[f64], &mut [f64]), b: &mut [f64], tolerance
         b.iter_mut().zip(vector).for_each(|(b, v)| *b += factor * v);
     }
     residual[m].abs() / size
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn norm(a: &[f64]) -> f64 {

@@ -4,6 +4,7 @@
 //! from it. From then on only values change: assembly refills an array laid out as the pattern,
 //! [`Factorization::factorize`] and [`Factorization::solve`] work in storage that was allocated once.
 
+mod dot;
 mod elimination;
 mod error;
 mod factor;
@@ -20,10 +21,10 @@ mod supernodes;
 mod testing;
 mod tree;
 
+pub(crate) use dot::dot;
 pub use error::LinearError;
 pub use factor::{Factorization, Inertia};
 pub use gmres::gmres;
 pub use ordering::order;
 pub use pattern::Pattern;
 pub use sparse::SymmetricMatrix;
-pub(crate) use sparse::multiply_add;

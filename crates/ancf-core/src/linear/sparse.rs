@@ -62,7 +62,24 @@ impl SymmetricMatrix {
     ///
     /// When `x` or `y` is not of length WIDTH n.
     pub fn multiply_add<const WIDTH: usize>(&self, x: &[f64], y: &mut [f64]) {
-        multiply_add::<WIDTH>(&self.pattern, &self.values, x, y);
+        let Self { pattern, values } = self;
+        let length = WIDTH * pattern.n();
+        assert_eq!((x.len(), y.len()), (length, length), "{WIDTH} interleaved vectors of the size of the matrix");
+        let (x, y) = (x.as_chunks::<WIDTH>().0, y.as_chunks_mut::<WIDTH>().0);
+        for (column, &x_column) in x.iter().enumerate() {
+            let values = &values[pattern.col_ptr()[column]..pattern.col_ptr()[column + 1]];
+            let mut sum = x_column.map(|x| values[0] * x);
+            for (&value, &row) in values.iter().zip(pattern.rows(column)).skip(1) {
+                let (x, y) = (&x[row], &mut y[row]);
+                for c in 0..WIDTH {
+                    y[c] += value * x_column[c];
+                    sum[c] += value * x[c];
+                }
+            }
+            for c in 0..WIDTH {
+                y[column][c] += sum[c];
+            }
+        }
     }
 
     /// Writes b - A x to `residual` and returns the backward error, the largest of |b - A x|_i / (|A| |x| + |b|)_i.
@@ -100,27 +117,6 @@ impl SymmetricMatrix {
         let errors = residual.iter().zip(&scale).map(|(r, scale)| if *r == 0.0 { 0.0 } else { r.abs() / scale });
         // not f64::max, which would drop a NaN
         errors.fold(0.0, |worst, error| if error > worst || error.is_nan() { error } else { worst })
-    }
-}
-
-/// [`SymmetricMatrix::multiply_add`] with the values of a matrix that are elsewhere.
-pub(crate) fn multiply_add<const WIDTH: usize>(pattern: &Pattern, values: &[f64], x: &[f64], y: &mut [f64]) {
-    let length = WIDTH * pattern.n();
-    assert_eq!((x.len(), y.len()), (length, length), "{WIDTH} interleaved vectors of the size of the matrix");
-    let (x, y) = (x.as_chunks::<WIDTH>().0, y.as_chunks_mut::<WIDTH>().0);
-    for (column, &x_column) in x.iter().enumerate() {
-        let values = &values[pattern.col_ptr()[column]..pattern.col_ptr()[column + 1]];
-        let mut sum = x_column.map(|x| values[0] * x);
-        for (&value, &row) in values.iter().zip(pattern.rows(column)).skip(1) {
-            let (x, y) = (&x[row], &mut y[row]);
-            for c in 0..WIDTH {
-                y[c] += value * x_column[c];
-                sum[c] += value * x[c];
-            }
-        }
-        for c in 0..WIDTH {
-            y[column][c] += sum[c];
-        }
     }
 }
 

@@ -10,6 +10,7 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::assembly::System;
+use crate::linear::dot;
 
 /// Vectors ahead of the operator: a free body has six modes with the same eigenvalue.
 const AHEAD: usize = 6;
@@ -167,8 +168,4 @@ fn mass_times(system: &System, x: &[f64]) -> Vec<f64> {
     let mut y = vec![0.0; x.len()];
     system.add_mass_times(x, &mut y);
     y
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

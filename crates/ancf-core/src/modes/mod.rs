@@ -47,11 +47,11 @@ const GAP: f64 = 1e-6;
 const PLACES: [f64; 3] = [0.5, 0.35, 0.65];
 /// Residual of a mode that has converged, relative to its eigenvalue's distance from the shift.
 const PRECISION: f64 = 1e-9;
-/// Residual of a mode that rounding keeps from converging, in units of `eps |x| . |K| |x|`.
-const FLOOR: f64 = 4.0;
-/// Eigenvalue that is nothing but rounding, in the same unit: entries of `K` are differences of larger numbers. Rigid
-/// rotations of flat and curved bodies reach 200.
-const ZERO: f64 = 1000.0;
+/// Residual of a mode that rounding keeps from converging, in units of `eps |x| . |K| |x|`, where `|x|` holds the lengths of
+/// nodal vectors.
+const FLOOR: f64 = 0.02;
+/// Eigenvalue that is nothing but rounding, in the same unit. Rigid motions of flat and curved bodies reach 1.7.
+const ZERO: f64 = 5.0;
 /// Coupling of modes by loads without potential, relative to their eigenvalues, above which they are none.
 const COUPLING: f64 = 1e-6;
 /// Factorisations to find the shift, each with ten times the last one.
@@ -250,8 +250,12 @@ impl<'a> Search<'a> {
     }
 
     /// The unit in which rounding of the stiffness changes an eigenvalue, `eps |x| . |K| |x|`.
+    ///
+    /// Rounded strains are membrane forces, which hold a surface across it as well, where a flat body at rest has but the
+    /// small stiffness of bending. So the length of a nodal vector stands for each of its components.
     fn rounding(&self, shape: &[f64]) -> f64 {
-        let free: Vec<f64> = self.system.free().iter().map(|coordinate| shape[*coordinate].abs()).collect();
+        let length = |vector: usize| shape[3 * vector..][..3].iter().map(|x| x * x).sum::<f64>().sqrt();
+        let free: Vec<f64> = self.system.free().iter().map(|coordinate| length(coordinate / 3)).collect();
         let (pattern, values) = (self.stiffness.pattern(), self.stiffness.values());
         let mut sum = 0.0;
         for column in 0..pattern.n() {

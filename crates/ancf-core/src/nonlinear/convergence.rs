@@ -4,6 +4,8 @@ use super::Failure;
 
 /// A correction this many times the size of the model cannot lead anywhere.
 const ABSURD: f64 = 1e3;
+/// Nor can one that is larger than the model and this many times any before.
+const LEAP: f64 = 5.0;
 /// Corrections below this that no longer shrink are rounding.
 const ROUNDING: f64 = 1e-6;
 /// Iterations without progress after which there will be none: at the level of rounding, and above it.
@@ -23,6 +25,7 @@ pub(super) struct Convergence {
     /// Largest ratio of a size, if it is above rounding, to the one before.
     pub growth: f64,
     smallest: f64,
+    largest: f64,
     stalled: usize,
     small: bool,
     first_energy: Option<f64>,
@@ -31,7 +34,16 @@ pub(super) struct Convergence {
 impl Convergence {
     pub fn new(tolerance: f64) -> Self {
         let size = f64::INFINITY;
-        Self { tolerance, size, growth: 0.0, smallest: size, stalled: 0, small: false, first_energy: None }
+        Self {
+            tolerance,
+            size,
+            growth: 0.0,
+            smallest: size,
+            largest: size,
+            stalled: 0,
+            small: false,
+            first_energy: None,
+        }
     }
 
     /// Whether a correction of this size, by an old factorisation, may lead to the solution.
@@ -58,13 +70,15 @@ impl Convergence {
         if !size.is_finite() {
             return Err(Failure::NotFinite { iteration });
         }
-        if size > ABSURD {
+        let leaps = size > LEAP * self.largest.max(1.0 / LEAP);
+        if size > ABSURD || leaps {
             return Err(Failure::Diverged { iteration, correction: size });
         }
         if size > ROUNDING {
             self.growth = self.growth.max(size / self.size);
         }
         self.size = size;
+        self.largest = if iteration == 1 { size } else { self.largest.max(size) };
         let energy = energy.abs();
         let first_energy = *self.first_energy.get_or_insert(energy);
         // Where the start is almost the solution the first energy is rounding; then two small corrections settle it.

@@ -199,11 +199,6 @@ impl Failure {
         }
     }
 
-    /// Whether an iteration did not lead to a solution, though there may be one.
-    pub(crate) fn is_divergence(&self) -> bool {
-        matches!(self, Self::NotConverged { .. } | Self::Diverged { .. } | Self::NotFinite { .. })
-    }
-
     /// The failure that a linear algebra error means in an iteration; `place` says which coordinate an equation is for.
     pub(crate) fn from_linear(error: LinearError, iteration: usize, place: impl Fn(usize) -> String) -> Self {
         match error {

@@ -40,6 +40,8 @@ pub struct Problem<'a> {
     ///
     /// Simo and Tarnow (1994); Gonzalez (1996), discrete gradients; Laursen and Meng (2001), the correction of the stress.
     pub start: Option<&'a [f64]>,
+    /// Whether the iteration begins at a stable equilibrium, so that the stiffness should stay positive.
+    pub stable: bool,
 }
 
 impl Problem<'_> {

@@ -1,7 +1,7 @@
 //! Newton's method: plain, with mixed integration points, and modified.
 
 use crate::assembly::System;
-use crate::linear::gmres;
+use crate::linear::{dot, gmres};
 use crate::observe::Observer;
 
 use super::convergence::Convergence;
@@ -19,6 +19,10 @@ const DIFFERENCE: f64 = 1e-7;
 /// A correction, relative to the size of the model, after which the factorisation serves the rest of a static solution.
 /// Newton's method then needs one or two more iterations, in which the tangent hardly changes.
 const NEAR: f64 = 1e-5;
+/// Shares of the actual stress that are tried, one after the other, in the tangent of a stable structure that has negative
+/// pivots with the extrapolated one, and the iterations in which they are.
+const ACTUAL: [f64; 3] = [0.1, 0.3, 1.0];
+const FIRST_ITERATIONS: usize = 3;
 
 /// How a solution was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -206,11 +210,13 @@ impl Newton {
             if fresh && !finite {
                 return Err(Failure::NotFinite { iteration });
             }
-            let factorize = |system: &mut System| match system.factorize() {
-                Ok(inertia) => Ok(inertia.negative),
-                Err(error) => Err(Failure::from_linear(error, iteration, |row| system.describe(row))),
-            };
-            let negative = self.reuse.kept.map_or_else(|| factorize(system), |kept| Ok(kept.negative))?;
+            let mut negative =
+                self.reuse.kept.map_or_else(|| factorize(system, iteration), |kept| Ok(kept.negative))?;
+            // Such a tangent says nothing about the stability of the solution.
+            let firmer = negative > 0 && fresh && extrapolate && problem.stable && iteration <= FIRST_ITERATIONS;
+            if firmer {
+                negative = self.bring_in_stress(system, &problem, q, iteration)?;
+            }
             let mut size = f64::INFINITY;
             if finite {
                 system.solve(&self.forces.residual, &mut self.correction);
@@ -241,13 +247,14 @@ impl Newton {
             if fresh && iteration == 1 {
                 trusted = reuse && self.reuse.try_first();
             }
-            let converged = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
+            let small = convergence.take(iteration, size, dot(&self.correction, &self.forces.residual))?;
+            let converged = small && !firmer;
             self.previous.copy_from_slice(q);
             self.forces.correct(&self.correction, q);
             extrapolate = mip;
             // Where the first factorisation is not trusted, the next one is that has shown to contract.
             let keep = reuse && (trusted || iteration > 1 && contracts) || converged && self.options.reuse;
-            let keep = keep || problem.mass == 0.0 && contracts && size <= NEAR;
+            let keep = keep || problem.mass == 0.0 && contracts && size <= NEAR && !firmer;
             self.reuse.kept = keep.then_some(Kept { coefficients, negative });
             if converged {
                 if !fresh {
@@ -260,6 +267,31 @@ impl Newton {
             }
         }
         Err(Failure::NotConverged { iterations: max_iterations, correction: convergence.size })
+    }
+
+    /// Factorises the tangent with as much of the actual stress as makes it positive, if that does.
+    ///
+    /// Extrapolated along a step, compression grows in proportion where that of a buckled skin does not, and with it the
+    /// tangent loses its definiteness. The actual stress at the prediction is one of tension by all that has turned.
+    /// Extrapolation over a part `f` of the step has a share `1 - f^2` of it, if strains are quadratic in the coordinates.
+    fn bring_in_stress(
+        &mut self,
+        system: &mut System,
+        problem: &Problem<'_>,
+        q: &[f64],
+        iteration: usize,
+    ) -> Result<usize, Failure> {
+        let mut negative = 0;
+        for share in ACTUAL {
+            let part = (1.0_f64 - share).sqrt();
+            let previous: Vec<f64> = q.iter().zip(&self.previous).map(|(q, p)| q - part * (q - p)).collect();
+            self.forces.evaluate(system, problem, q, Some(Tangent { previous: Some(&previous) }));
+            negative = factorize(system, iteration)?;
+            if negative == 0 {
+                break;
+            }
+        }
+        Ok(negative)
     }
 
     /// Corrects for what the assembled tangent of mean forces lacks: strains change along `B` at the end of the step, not at
@@ -276,6 +308,14 @@ impl Newton {
     }
 }
 
+/// Factorises the tangent of an iteration and returns its number of negative pivots.
+fn factorize(system: &mut System, iteration: usize) -> Result<usize, Failure> {
+    match system.factorize() {
+        Ok(inertia) => Ok(inertia.negative),
+        Err(error) => Err(Failure::from_linear(error, iteration, |row| system.describe(row))),
+    }
+}
+
 /// Changes a correction so that it keeps the coordinates in the plane with the given normal, and returns the change of the
 /// load factor that this takes.
 fn stay_in_plane(system: &mut System, normal: &[f64], q: &[f64], t: f64, correction: &mut [f64]) -> f64 {
@@ -285,10 +325,6 @@ fn stay_in_plane(system: &mut System, normal: &[f64], q: &[f64], t: f64, correct
     let change = dot(normal, correction) / dot(normal, &rate);
     correction.iter_mut().zip(&rate).for_each(|(c, v)| *c -= change * v);
     change
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// The larger of two numbers; NaN if either is.

@@ -8,19 +8,23 @@ use crate::observe::Observer;
 use crate::quadrature::Rule;
 
 use super::Options;
-use super::load::ITERATIONS;
+use super::load::{GROWN, ITERATIONS};
 use super::path::{Load, Path, Point, difference, hermite};
 
-/// Largest distance of a solution from its prediction, relative to the step, and the one to aim at: by a polygon through
-/// the points a path can be drawn.
-const TURN: [f64; 2] = [0.5, 0.2];
+/// Largest distance of a solution from its prediction, relative to the step, and the one to aim at: beyond, Newton's method
+/// rarely converges.
+const TURN: [f64; 2] = [1.0, 0.55];
 /// Largest difference between the gain of strain energy and the work on the cubic way, relative to the latter.
-const MISMATCH: f64 = 0.05;
+const MISMATCH: f64 = 0.03;
+/// Length of a step after one along which the slope of the load falls to a share, relative to its length and that share, and
+/// the least that it is cut to: some limit points come in pairs that are close together.
+const FLATTENED: f64 = 6.0;
+const LEAST: f64 = 0.1;
 /// A limit point this close to the end of a step, relative to its length, is that end.
 const LIMIT: f64 = 0.05;
 /// A step in which the number of negative pivots changes though the load factor goes on becomes shorter by this share, until
 /// it changes the load factor by less than so much of it: a bifurcation is located as well as this.
-const BIFURCATION: [f64; 2] = [0.25, 1e-2];
+const BIFURCATION: [f64; 2] = [0.25, 5e-3];
 
 /// Follows the path until it reaches the last load factor.
 ///
@@ -86,7 +90,10 @@ impl Walk {
         loop {
             match self.advance(path, share * self.length, target, observer) {
                 Ok(Step::Accepted { iterations, turn, end }) => {
-                    let growth = (ITERATIONS / iterations as f64).powi(2).min(share * TURN[1] / turn).clamp(0.5, 2.0);
+                    let growth = (ITERATIONS / iterations as f64).powi(2).min(share * TURN[1] / turn).clamp(0.5, GROWN);
+                    // Where the load hardly grows any more, but for a limit point that the step was to end at, one is near.
+                    let flattened = if share == 1.0 { (end.t / self.tangent.t).abs() } else { 1.0 };
+                    let growth = growth.min((FLATTENED * flattened).max(LEAST));
                     self.length = (growth * self.length).min(self.longest).min(self.most / end.t.abs());
                     self.tangent = end;
                     return Ok(());
@@ -117,7 +124,8 @@ impl Walk {
         let mut q: Vec<f64> = from.q.iter().zip(&tangent.q).map(|(q, p)| q + length * p).collect();
         let predicted = q.clone();
         let t = from.load.t + length * tangent.t;
-        let mut problem = Problem { t, stiffness: 1.0, ..Problem::default() };
+        let stable = from.negative_pivots == 0;
+        let mut problem = Problem { t, stiffness: 1.0, stable, ..Problem::default() };
         let normal = metric.weighted(&tangent.q);
         let mut report = path.newton.solve_in_plane(path.system, &problem, &normal, &mut q, Some(&from.q), observer)?;
         let iterations = report.iterations;

@@ -1,4 +1,5 @@
-//! Loss of stability under a load: the structure moves, damped, to the next stable equilibrium.
+//! Along the path of a given load where load steps fail; on loss of stability the structure moves, damped, to the next stable
+//! equilibrium.
 //!
 //! Arc length leads over the limit point, or through the bifurcation, to an equilibrium that is not stable. From there
 //! the structure slides down its potential energy.
@@ -9,14 +10,10 @@ use crate::observe::Observer;
 use super::Options;
 use super::arc::{Metric, Walk};
 use super::motion::{Start, settle};
-use super::path::{Load, Path, difference, product};
+use super::path::{Load, Path, Point, difference, product};
 
-/// Steps by arc length in which stability is lost or the load gets on far enough.
+/// Steps by arc length in which stability is lost or the load is reached.
 const MOST_STEPS: usize = 50;
-/// Load, relative to the first step, after which it has got on; the same where the step that failed, four times as long, has
-/// seen an unstable state.
-const PASSED: f64 = 16.0;
-const PASSED_UNSTABLE: f64 = 4.0;
 /// How far beyond the load at which stability is lost the structure moves, relative to the first step: there the equilibrium
 /// that it leaves is no longer, and nor are those that are as close to their limit.
 const BEYOND: f64 = 0.01;
@@ -25,28 +22,26 @@ const MOST_MOTION: usize = 5000;
 /// Disturbance along the mode that has lost its stiffness, relative to the size of the model.
 const DISTURBANCE: f64 = 1e-3;
 
-/// Gets the load on from a point where a step has failed, of which `length` is a part: along the path, or by a jump; or
-/// leaves the path as it was.
-///
-/// Where an `unstable` state has been seen on the way, no step is longer than `length`: it could step over the stretch of
-/// the path that is not stable.
+/// Gets the load on from a point where a step has failed: along the path, in steps of which the first changes the load by
+/// `first`, or by a jump; or leaves the path at the last stable point.
 pub(super) fn pass(
     path: &mut Path<'_>,
-    [length, target]: [f64; 2],
-    unstable: bool,
+    to: [f64; 2],
     options: &Options,
     observer: &mut dyn Observer,
 ) -> Result<(), Failure> {
-    let (begin, work) = (path.at.clone(), path.work);
-    lead_on(path, [length, target], unstable, options, observer).inspect_err(|_| {
-        (path.at, path.work) = (begin, work);
-    })
+    let mut stable = (path.at.clone(), path.work);
+    let end = lead_on(path, to, &mut stable, options, observer);
+    if end.is_err() {
+        (path.at, path.work) = stable;
+    }
+    end
 }
 
 fn lead_on(
     path: &mut Path<'_>,
-    [length, target]: [f64; 2],
-    unstable: bool,
+    [first, target]: [f64; 2],
+    stable: &mut (Point, f64),
     options: &Options,
     observer: &mut dyn Observer,
 ) -> Result<(), Failure> {
@@ -54,10 +49,8 @@ fn lead_on(
     let start = path.at.load.t;
     let direction = (target - start).signum();
     let onwards = |from: f64, change: f64| from + direction * change.min((target - from).abs());
-    let longest = if unstable { length } else { PASSED * length };
-    let passed = if unstable { PASSED_UNSTABLE } else { PASSED } * length;
-    let mut walk = Walk::new(path, [longest * direction, length, options.min_step]);
-    let (mut stable, mut farthest) = (path.at.q.clone(), start);
+    let mut walk = Walk::new(path, [target - start, first, options.min_step]);
+    let mut farthest = start;
     for _ in 0..MOST_STEPS {
         match walk.step(path, target, observer) {
             Ok(()) => path.steps += 1,
@@ -65,12 +58,12 @@ fn lead_on(
             // The path leads nowhere, but a motion does.
             Err(_) => {
                 path.linearize()?;
-                let (q, t) = (path.at.q.clone(), onwards(farthest, length));
+                let (q, t) = (path.at.q.clone(), onwards(farthest, first));
                 let change = path.change(&q, Load { t, held: 0.0 });
                 let mut shape = vec![0.0; q.len()];
                 path.system.solve(&change, &mut shape);
                 let stiffness = product(&change, &shape);
-                return jump(path, Start { t, q, shape: &shape, stiffness, stable: false }, observer);
+                return jump(path, Start { t, q, shape: &shape, stiffness }, observer);
             }
         }
         let back = (farthest - path.at.load.t) * direction;
@@ -79,15 +72,16 @@ fn lead_on(
         }
         // A stable equilibrium at a smaller load lies beyond an unstable stretch that the step has passed over.
         if path.at.negative_pivots > 0 || back > 0.0 {
-            let q = disturbed(path, &difference(&path.at.q, &stable));
+            let q = disturbed(path, &difference(&path.at.q, &stable.0.q));
             let shape = difference(&path.at.q, path.system.model().reference());
-            let (t, stiffness) = (onwards(farthest, BEYOND * length), 2.0 * path.at.energy);
-            return jump(path, Start { t, q, shape: &shape, stiffness, stable: false }, observer);
+            let (t, stiffness) = (onwards(farthest, BEYOND * first), 2.0 * path.at.energy);
+            return jump(path, Start { t, q, shape: &shape, stiffness }, observer);
         }
-        if path.at.load.t == target || (farthest - start) * direction > passed {
+        observer.reached(path.at.load.t);
+        if path.at.load.t == target {
             break;
         }
-        stable.copy_from_slice(&path.at.q);
+        *stable = (path.at.clone(), path.work);
     }
     Ok(())
 }

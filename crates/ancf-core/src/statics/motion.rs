@@ -6,7 +6,6 @@
 use std::sync::Arc;
 
 use crate::assembly::System;
-use crate::element::Want;
 use crate::nonlinear::{Failure, Newton, Options as NewtonOptions, Problem};
 use crate::observe::Observer;
 
@@ -47,8 +46,6 @@ pub(super) struct Start<'a> {
     pub shape: &'a [f64],
     /// Its product with the stiffness and itself, J.
     pub stiffness: f64,
-    /// Whether the stiffness must stay positive on the way.
-    pub stable: bool,
 }
 
 /// Moves until it comes to rest in a stable equilibrium, in about so many iterations.
@@ -58,10 +55,10 @@ pub(super) struct Start<'a> {
 ///
 /// # Errors
 ///
-/// The motion comes where it may not, the stiffness is not positive; or it does not come to rest.
+/// The motion does not come to rest.
 pub(super) fn settle(
     path: &mut Path<'_>,
-    Start { t, mut q, shape, stiffness, stable }: Start<'_>,
+    Start { t, mut q, shape, stiffness }: Start<'_>,
     most: usize,
     observer: &dyn Observer,
 ) -> Result<Point, Failure> {
@@ -109,11 +106,6 @@ pub(super) fn settle(
             continue;
         };
         (q, energy) = (next, there);
-        let negative = if stable { negative_pivots(path, t, &q)? } else { 0 };
-        if negative > 0 {
-            end = Some(Err(Failure::Unstable { negative }));
-            break;
-        }
         let quick = report.iterations <= QUICK;
         if quick {
             mass *= longer;
@@ -122,7 +114,7 @@ pub(super) fn settle(
         last = moved;
         let stuck = moved < STUCK;
         if moved < AT_REST && calm || stuck {
-            end = rest(path, t, &q, observer)?.map(Ok);
+            end = rest(path, t, &q, observer)?;
             if end.is_some() || stuck {
                 break;
             }
@@ -131,19 +123,11 @@ pub(super) fn settle(
     path.forces += damped.forces();
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
-    end.unwrap_or_else(|| match cause {
+    end.ok_or_else(|| match cause {
         // No step has succeeded.
-        Some(failure) if last == f64::INFINITY => Err(failure),
-        _ => Err(Failure::NotSettled { iterations: newton.iterations(), moved: last }),
+        Some(failure) if last == f64::INFINITY => failure,
+        _ => Failure::NotSettled { iterations: newton.iterations(), moved: last },
     })
-}
-
-/// Negative pivots of the stiffness.
-fn negative_pivots(path: &mut Path<'_>, t: f64, q: &[f64]) -> Result<usize, Failure> {
-    let want = Want { mass: 0.0, stiffness: 1.0, previous: None };
-    path.system.assemble(q, t, want, &mut vec![0.0; q.len()]);
-    let inertia = path.system.factorize();
-    inertia.map(|inertia| inertia.negative).map_err(|e| Failure::from_linear(e, 0, |row| path.system.describe(row)))
 }
 
 /// The stable equilibrium close to `q`, if there is one.

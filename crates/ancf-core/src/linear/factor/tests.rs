@@ -113,10 +113,10 @@ fn interleaved_right_hand_sides_are_solved_each() {
     let n = 81;
     let matrix = definite_badly_scaled(n, 3);
     let (mut factorization, _) = factorized(&matrix);
-    let rhs = DMatrix::from_vec(n, 5, random_vector(5 * n, 4));
+    let rhs = DMatrix::from_vec(n, 4, random_vector(4 * n, 4));
     let expected = dense(&matrix).cholesky().unwrap().solve(&rhs);
-    let mut solution = rhs.transpose(); // column-major, so that memory holds (n, 5) row by row
-    factorization.solve_many(solution.as_mut_slice(), 5);
+    let mut solution = rhs.transpose(); // column-major, so that memory holds (n, 4) row by row
+    factorization.solve_four(solution.as_mut_slice().as_chunks_mut().0);
     assert!((solution.transpose() - &expected).amax() < 1e-10 * expected.amax());
 }
 
@@ -168,7 +168,7 @@ fn large_systems_have_the_same_bits_on_any_number_of_threads() {
     // by Gershgorin's theorem there are as many negative eigenvalues as negative diagonal entries
     let matrix = plate(30, |column| if column % 10 == 3 { -1.0 } else { 1.0 });
     let n = matrix.pattern().n();
-    let rhs = random_vector(3 * n, 2);
+    let rhs = random_vector(4 * n, 2);
     let solve = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -177,13 +177,13 @@ fn large_systems_have_the_same_bits_on_any_number_of_threads() {
             let tree = &factorization.tree;
             assert!(tree.subtrees.len() > 4 && tree.fronts[tree.top()].iter().any(|front| front.work() > SHARED));
             let mut x = rhs.clone();
-            factorization.solve_many(&mut x, 3);
+            factorization.solve_four(x.as_chunks_mut().0);
             x
         })
     };
     let one = solve(1);
-    for component in 0..3 {
-        let part = |x: &[f64]| x.iter().skip(component).step_by(3).copied().collect::<Vec<_>>();
+    for component in 0..4 {
+        let part = |x: &[f64]| x.iter().skip(component).step_by(4).copied().collect::<Vec<_>>();
         assert!(matrix.residual(&part(&one), &part(&rhs), &mut vec![0.0; n]) < 1e-14);
     }
     for threads in [2, 3] {

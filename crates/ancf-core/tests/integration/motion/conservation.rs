@@ -228,6 +228,9 @@ fn a_resumed_run_has_the_same_bits() {
                 assert_eq!(stopped.outcome, Outcome::Interrupted);
                 let bytes = first.checkpoint;
                 assert!(Checkpoint::from_bytes(&bytes[..bytes.len() - 1]).is_err());
+                let mut flipped = bytes.clone();
+                flipped[stop * 997 % bytes.len()] ^= 1;
+                assert!(Checkpoint::from_bytes(&flipped).is_err());
                 let (checkpoint, before) = Checkpoint::from_bytes(&bytes).unwrap();
                 assert_eq!(checkpoint.t(), stopped.reached);
                 let (second, resumed) = run(&model, &options, Some(checkpoint), usize::MAX);
