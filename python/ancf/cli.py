@@ -34,6 +34,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Commands tell them in their own way.
     for told in (EnergyWarning, CourseWarning, CheckpointWarning):
         warnings.simplefilter("ignore", told)
+    # Letters that no font has are boxes in the pictures: one sees them there.
+    warnings.filterwarnings("ignore", message="Glyph .* missing from font")
     try:
         status: int = options.call(options)
     except InputError as error:

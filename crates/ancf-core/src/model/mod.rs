@@ -133,9 +133,9 @@ impl Model {
         &self.loads
     }
 
-    /// The same model, every body with a density of at least `least`, kg/m3.
-    pub(crate) fn with_least_density(&self, least: f64) -> Self {
-        let bodies = self.bodies.iter().map(|body| body.with_least_density(least)).collect();
+    /// The same model, bodies that have no density with this one, kg/m3.
+    pub(crate) fn with_density_where_none(&self, density: f64) -> Self {
+        let bodies = self.bodies.iter().map(|body| body.with_density_where_none(density)).collect();
         Self { bodies, ..self.clone() }
     }
 
