@@ -19,6 +19,7 @@ from PIL import Image
 import ancf
 from ancf.cli import main
 from ancf.output import summarize
+from ancf.scene import Scene
 
 Edit = Callable[..., Path]
 
@@ -157,8 +158,32 @@ def test_an_error_while_writing_leaves_the_earlier_run(
 
     monkeypatch.setattr("numpy.savez_compressed", full)
     assert main(arguments) == 1
-    assert "No space left" in capsys.readouterr().err
+    names = f"{tmp_path / 'result.npz'}, {tmp_path / 'summary.json'}"
+    assert capsys.readouterr().err == f"ancf: [Errno 28] No space left on device: {names!r}\n"
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_folder_removed_meanwhile_is_made_again(
+    scenes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    solve = Scene.solve
+
+    def solve_and_remove(*arguments: Any, **options: Any) -> Any:
+        result = solve(*arguments, **options)
+        (tmp_path / "a" / "b").rmdir()
+        (tmp_path / "a").rmdir()
+        return result
+
+    monkeypatch.setattr(Scene, "solve", solve_and_remove)
+    assert main(["run", str(scenes / "cantilever.toml"), "-o", str(tmp_path / "a" / "b"), "--quiet", "--plot"]) == 0
+    names = sorted(path.name for path in (tmp_path / "a" / "b").iterdir())
+    assert names == ["plate.png", "result.npz", "summary.json"]
+
+
+def test_a_title_in_letters_without_a_font(edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene = edit("cantilever.toml", ('title = "Small cantilever"', 'title = "\u6771\u4eac"'))
+    assert main(["run", str(scene), "-o", str(tmp_path / "out"), "--quiet", "--plot"]) == 0
+    assert capsys.readouterr().err == ""
 
 
 def test_a_hinge_alone_holds_nothing_in_statics(edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

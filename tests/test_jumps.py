@@ -51,6 +51,29 @@ def test_a_perfect_column_buckles_at_eulers_load(ratio: float) -> None:
     assert_elastica(result, ratio)
 
 
+@pytest.mark.parametrize("metre", [1.0, 2.0**20])
+def test_a_column_buckles_under_its_own_weight(metre: float) -> None:
+    """At rho g A L^3 / EI = 7.837, Greenhill (1881); in micrometres no number for the density is too small to count."""
+    width, thickness, young, density = 0.1, 0.01, 1e8, 1000.0
+    strip = ancf.Rectangle(
+        size=(LENGTH * metre, width * metre),
+        divisions=(16, 1),
+        thickness=thickness * metre,
+        material=ancf.Material(E=young / metre, nu=0.0, density=density / metre**3),
+    )
+    gravity = 12.0 * young * thickness**2 / 12 / density / LENGTH**3
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.Gravity(acceleration=(-gravity * metre, 0.0, 0.0))],
+    )
+    result = ancf.solve_static(model)
+    np.testing.assert_allclose(12.0 * result.jumps, [7.837], rtol=0.01)
+    assert result.negative_pivots[-1] == 0
+    tip = result.positions("strip", [(LENGTH * metre, 0.0)])[-1, 0] / metre
+    assert 0.5 < abs(tip[2]) < 0.85
+
+
 def test_arc_length_bends_with_a_column_that_is_all_but_perfect() -> None:
     """A step that ends straight, above Euler's load, would be on another branch, which is not stable."""
     result = ancf.solve_static(column(3.0, 1e-6), path="arc")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import ancf
@@ -88,3 +89,34 @@ def test_signs_under_a_moment_at_an_edge(edge: str, element: Any) -> None:
     assert found("moment") == pytest.approx(M, rel=5e-3)
     assert found("stress_top") == pytest.approx(-6 * M / h**2, rel=5e-3)
     assert found("stress_bottom") == pytest.approx(6 * M / h**2, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("element", "membrane"), [("thin36", "full"), ("thin48", "full"), ("full48a", None), ("full48b", None)]
+)
+def test_membrane_forces_away_from_a_clamp_are_in_equilibrium(element: Any, membrane: Any) -> None:
+    """Cuts through a strip under tension; the gradients of the clamp leave no strain at its nodes."""
+    body = ancf.Rectangle(
+        size=(1.0, 0.4),
+        divisions=(8, 2),
+        thickness=0.01,
+        material=ancf.Material(E=2e11, nu=0.3),
+        element=element,
+        membrane=membrane,
+    )
+    model = ancf.Model(
+        bodies={"strip": body},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(5000.0, 0.0, 0.0))],
+    )
+    result = ancf.solve_static(model)
+    at, weight = np.polynomial.legendre.leggauss(3)
+    y = np.concatenate([0.1 + 0.1 * at, 0.3 + 0.1 * at])
+
+    def carried(x: float) -> float:
+        forces = result.evaluate("strip", [(x, place) for place in y], "membrane_force")[-1, :, 0]
+        return float(np.tile(0.1 * weight, 2) @ forces)
+
+    assert abs(carried(0.0)) < 0.01 * 2000.0
+    for row in range(2, 8):
+        assert carried((row + 0.5) / 8) == pytest.approx(2000.0, rel=5e-3)

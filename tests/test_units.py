@@ -60,11 +60,11 @@ def displacements(result: ancf.Result, units: Units, element: str) -> NDArray[np
     return positions
 
 
-def assert_same(found: ancf.Result, expected: ancf.Result, units: Units, element: str) -> None:
+def assert_same(found: ancf.Result, expected: ancf.Result, units: Units, element: str, rounding: float = 1e-11) -> None:
     moved = displacements(expected, SI, element)
     largest = np.abs(moved).max()
     assert largest > 1e-4
-    np.testing.assert_allclose(displacements(found, units, element), moved, rtol=0, atol=1e-11 * largest)
+    np.testing.assert_allclose(displacements(found, units, element), moved, rtol=0, atol=rounding * largest)
 
 
 ELEMENTS = [
@@ -103,3 +103,52 @@ def test_motions_are_the_same(units: Units, method: Method, step: float) -> None
         for u in (SI, units)
     )
     assert_same(found, expected, units, "thin36")
+
+
+@pytest.mark.parametrize(("element", "membrane"), ELEMENTS)
+@pytest.mark.parametrize("factor", [2.0**13, 2.0**-13])
+def test_parameters_of_a_surface_are_the_same(factor: float, element: str, membrane: str | None) -> None:
+    """A shape does not depend on the units of one of its natural coordinates: a ring, its radius scaled in the map."""
+
+    def ring(factor: float) -> ancf.Model:
+        body = ancf.Surface(
+            domain=((0.5 * factor, factor), (0.0, 3.0)),
+            position=lambda x, y: (x / factor * np.cos(y), x / factor * np.sin(y), 0 * x),
+            divisions=(2, 6),
+            thickness=0.004,
+            material=ancf.Material(E=2e11, nu=0.3),
+            element=element,  # type: ignore[arg-type]
+            membrane=membrane,  # type: ignore[arg-type]
+        )
+        support = ancf.Support(at="edge:y0", clamp=True)
+        return ancf.Model(
+            bodies={"ring": body},
+            supports=[support],
+            loads=[ancf.LineLoad(at="edge:y1", per_length=(0.0, 0.0, 200.0))],
+        )
+
+    expected, found = (ancf.solve_static(ring(f)) for f in (1.0, factor))
+    # Tangents of a map come from differences, with errors of rounding.
+    assert_same(found, expected, SI, element, 1e-6)
+
+
+@pytest.mark.parametrize("millimetre", [False, True])
+def test_a_published_plate_in_millimetres(millimetre: bool) -> None:
+    """Sze, Liu and Lo (2004), 3.3: the slit annular plate, lifted by 13.9 and 17.5 m, in m and N, or mm and N."""
+    unit = 1000.0 if millimetre else 1.0
+    model = ancf.Model(
+        bodies={
+            "plate": ancf.Annulus(
+                radii=(6 * unit, 10 * unit),
+                angle=2 * np.pi,
+                divisions=(6, 30),
+                thickness=0.03 * unit,
+                material=ancf.Material(E=21e6 / unit**2, nu=0.0),
+            )
+        },
+        supports=[ancf.Support(at="edge:y0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:y1", per_length=(0.0, 0.0, 0.8 / unit))],
+    )
+    ends = [(6 * unit, 2 * np.pi), (10 * unit, 2 * np.pi)]
+    lifted = ancf.solve_static(model).positions("plate", ends)[-1, :, 2]
+    np.testing.assert_allclose(lifted / unit, [13.891, 17.528], rtol=5e-3)

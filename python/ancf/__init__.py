@@ -28,6 +28,7 @@ same from a file, and ``ancf run scene.toml -o folder`` runs such a file.
 from ancf._core import __version__
 from ancf.balance import EnergyWarning
 from ancf.bodies import Annulus, Cylinder, Rectangle, Sphere
+from ancf.courses import CourseWarning
 from ancf.errors import InputError, Interrupted, Mistake, SolveError
 from ancf.loads import Force, Gravity, LineLoad, Moment, Pressure
 from ancf.mapped import Surface
@@ -45,6 +46,7 @@ from ancf.supports import Rotation, Shake, Support
 __all__ = [
     "Annulus",
     "CheckpointWarning",
+    "CourseWarning",
     "Cylinder",
     "Dynamic",
     "Energy",

@@ -16,7 +16,7 @@ _IndexArray: TypeAlias = NDArray[np.uint64]
 _At: TypeAlias = str | tuple[float, float]
 _History: TypeAlias = str | Sequence[tuple[float, float]]
 
-__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "info", "modes", "simulate", "solve_static"]
+__all__ = ["InputError", "Model", "Run", "Shape", "__version__", "curve", "info", "modes", "simulate", "solve_static"]
 
 __version__: str
 
@@ -199,4 +199,8 @@ def modes(
     threads: int | None,
     progress: Callable[[float], Any] | None,  # called with the number of modes found
 ) -> tuple[Run, _FloatArray, _FloatArray]: ...  # (modes,) eigenvalues, 1/s2; (modes, n) shapes, x . M x = 1
+def curve(
+    rows: _FloatArray,  # (rows, 2): t, value
+    t: _FloatArray,  # (times,)
+) -> _FloatArray: ...  # (times,) of the smooth curve on which supports move
 def info() -> dict[str, str]: ...  # versions of ancf-core and faer, threads, CPU features, SIMD lanes

@@ -16,6 +16,7 @@ from ancf.errors import InputError, Mistake, Mistakes, from_core, one_of, show
 from ancf.inputs import Input, OnBody, numbers, table
 from ancf.loads import History, Load
 from ancf.mapped import Surface
+from ancf.memory import MODEL, check_memory
 from ancf.places import Domain
 from ancf.probes import QUANTITIES, Probe, Quantity
 from ancf.supports import Support
@@ -88,6 +89,7 @@ class Model(Input):
         for index, support in enumerate(self.supports):
             with mistakes.gather("supports", index):
                 support.check_coordinates(self.bodies[support.body].element)
+        check_memory(self.bodies, dict.fromkeys(self.bodies, MODEL))
         core = self._assemble_bodies()
         for key, items in (("supports", self.supports), ("loads", self.loads), ("probes", self.probes)):
             for index, item in enumerate(items):

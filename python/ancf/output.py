@@ -97,12 +97,19 @@ def earlier_aside(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def replacing(*paths: Path) -> Iterator[tuple[Path, ...]]:
-    """Give temporary names for files, which take their places together when the `with` statement ends well."""
+    """Give temporary names for files, which take their places together when the `with` statement ends well.
+
+    An error that names no file, as that of a full disk, names those that could not be written.
+    """
     temporary = tuple(path.with_name(f".{os.getpid()}-{path.name}") for path in paths)
     try:
         yield temporary
         for source, target in zip(temporary, paths, strict=True):
             source.replace(target)
+    except OSError as error:
+        if error.filename is None:
+            error.filename = ", ".join(map(str, paths))
+        raise
     finally:
         for source in temporary:
             source.unlink(missing_ok=True)
@@ -114,7 +121,7 @@ def write_result(folder: Path, title: str, result: Result | ModalResult) -> None
     Parameters
     ----------
     folder : Path
-        Where to; it exists.
+        Where to; made again if it was removed meanwhile.
     title : str
         Of the scene.
     result : Result or ModalResult
@@ -127,6 +134,7 @@ def write_result(folder: Path, title: str, result: Result | ModalResult) -> None
     """
     names = ("frequency", "eigenvalue", "shapes", "q") if isinstance(result, ModalResult) else ("t", "q", "v", "a")
     arrays = {name: getattr(result, name) for name in names}
+    folder.mkdir(parents=True, exist_ok=True)
     with replacing(folder / STATES, folder / SUMMARY) as (states, summary):
         with states.open("wb") as file:
             np.savez_compressed(file, **arrays)

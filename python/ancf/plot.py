@@ -12,7 +12,7 @@ from ancf.inputs import whole
 from ancf.modal import ModalResult
 from ancf.probes import QUANTITIES, Probe, Quantity
 from ancf.result import Result
-from ancf.stage import Stage
+from ancf.stage import Stage, short
 
 _FACETS = 2500
 _FACETS_OF_MODES = 900
@@ -104,7 +104,7 @@ def _draw_quantity(
     for probe in probes:
         record = result.probes[probe.name]
         for values, component, style in zip(record.value.T, components, _STYLES, strict=False):
-            label = f"{probe.name} {component}".rstrip()
+            label = f"{short(probe.name)} {component}".rstrip()
             axes.plot(record.t, values, style, marker=marker, markersize=3.5, color=colours[probe.name], label=label)
     axes.set_ylabel(" / ".join(part for part in (quantity.replace("_", " "), unit) if part))
     axes.grid(alpha=0.25)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ancf import _core
 from ancf.balance import EnergyWarning, balance_warnings
+from ancf.courses import CourseWarning, course_warnings
 from ancf.model import Model
 from ancf.probes import Probe, Quantity
 from ancf.run import CheckpointWarning, Dynamic, Static
@@ -165,15 +166,21 @@ class Result:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is doubtful about a motion: where and how far its energy balance is off, what to try; no checkpoint."""
+        """What is doubtful about a motion, and what to try.
+
+        Tables over time that it does not see as they are meant; where and how far its energy balance is off; that the
+        last checkpoint could not be written.
+        """
         return tuple(str(doubt) for doubt in self.doubts())
 
     def doubts(self) -> list[RuntimeWarning]:
         """Return the same as the warnings that are given."""
         doubts: list[RuntimeWarning] = []
-        if isinstance(self.run, Dynamic) and not self._rests():
-            moved = any(support.moves for support in self.model.supports)
-            doubts += [EnergyWarning(text) for text in balance_warnings(self.run, self.energy, moved)]
+        if isinstance(self.run, Dynamic):
+            doubts += [CourseWarning(text) for text in course_warnings(self.model, self.run)]
+            if not self._rests():
+                moved = any(support.moves for support in self.model.supports)
+                doubts += [EnergyWarning(text) for text in balance_warnings(self.run, self.energy, moved)]
         if self.unsaved is not None:
             doubts.append(CheckpointWarning(f"the last checkpoint was not written: {self.unsaved}"))
         return doubts

@@ -17,6 +17,7 @@ from ancf import _core
 from ancf.errors import InputError, Mistake, Mistakes, show
 from ancf.inputs import Input, Positive, PositiveInt, table
 from ancf.loads import Gravity, History
+from ancf.memory import EXPLICIT, STATE, check_memory, implicit
 from ancf.model import Model
 
 _INTERVALS = 100
@@ -122,6 +123,8 @@ class Static(_Run):
                     mistakes.add(("supports", index, name), "is for motion; in statics supports stay where they are")
         if any(isinstance(load, Gravity) for load in model.loads):
             check_density(model, mistakes, "where gravity acts")
+        with mistakes.gather():
+            check_memory(model.bodies, {name: implicit(body) for name, body in model.bodies.items()})
         mistakes.check()
 
     def start(self, core: _core.Model, threads: int | None, progress: ProgressCall) -> _core.Run:
@@ -272,6 +275,13 @@ class Dynamic(_Run):
         """Raise `InputError` if a body has no mass or a load is made for statics."""
         mistakes = Mistakes()
         check_density(model, mistakes, "in motion")
+        factorises = self.method not in ("verlet", "rk", "rigid")
+        states = STATE * len(self.times())
+        with mistakes.gather():
+            check_memory(
+                model.bodies,
+                {name: states + (implicit(body) if factorises else EXPLICIT) for name, body in model.bodies.items()},
+            )
         for index, load in enumerate(model.loads):
             if load.history == "ramp":
                 allowed = "is for statics; in motion allowed are constant and [[t, factor], ...]"
@@ -377,6 +387,8 @@ class Modes(Input):
         """Raise `InputError` if there are fewer modes, a body has no mass, or with loads a body can move rigidly."""
         mistakes = Mistakes()
         check_density(model, mistakes, "where it oscillates")
+        with mistakes.gather():
+            check_memory(model.bodies, {name: implicit(body) for name, body in model.bodies.items()})
         if self.count > model.dofs:
             mistakes.add(("count",), f"must not be greater than {model.dofs}, the coordinates not fixed", self.count)
         if self.load_factor == 0:

@@ -144,6 +144,9 @@ newton, tolerance, max_iterations, reuse : optional
 
     Warns
     -----
+    CourseWarning
+        If fixed steps miss what a load or a support does between them, or the smooth curve of a moved support goes far
+        beyond its rows; also in `Result.warnings`.
     EnergyWarning
         If the energy balance is off, so that the motion cannot be right; also in `Result.warnings`.
     CheckpointWarning

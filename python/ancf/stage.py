@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import matplotlib as mpl
@@ -11,8 +12,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LightSource, Normalize
 from matplotlib.figure import FigureBase
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FixedLocator, Locator, MaxNLocator
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection  # type: ignore[import-untyped]
+from mpl_toolkits.mplot3d.proj3d import proj_transform  # type: ignore[import-untyped]
 from numpy.typing import NDArray
 
 from ancf.errors import InputError, Mistake
@@ -23,11 +25,18 @@ from ancf.surface import Grid, quads
 FloatArray = NDArray[np.float64]
 
 _STATES = 25
+_LONG = 12
+_WIDTH = 40
 _COLOURS = mpl.colormaps["viridis"]
 _LIGHT = LightSource(azdeg=225, altdeg=50)
 _INK = "#202020"
 _FAINT = "#8a93a0"
 _SUPPORT = "#c1272d"
+
+
+def short(name: str) -> str:
+    """Return a name of a probe, cut to what a picture has room for."""
+    return name if len(name) <= _WIDTH else f"{name[: _WIDTH - 2]} …"
 
 
 class Stage:
@@ -90,8 +99,15 @@ class Stage:
         for name, centre, length in zip("xyz", middle, extent, strict=True):
             getattr(axes, f"set_{name}lim")(centre - length / 2, centre + length / 2)
             getattr(axes, f"set_{name}label")(f"{name} / m", labelpad=8)
-            ticks = max(1, round(5 * length / extent.max()))
-            getattr(axes, f"{name}axis").set_major_locator(MaxNLocator(ticks))
+            ticks = round(5 * length / extent.max())
+            if ticks > 1:
+                locator: Locator = MaxNLocator(ticks)
+            else:
+                locator = FixedLocator([round(centre, 1 - math.floor(math.log10(length)))])
+            if ticks <= 2:
+                # Out of the way of the other axes.
+                axes.tick_params(axis=name, pad=8)
+            getattr(axes, f"{name}axis").set_major_locator(locator)
             getattr(axes, f"{name}axis").set_pane_color((1, 1, 1, 0))
         axes.set_box_aspect(extent, zoom=0.95)
         axes.view_init(elev=20, azim=-55)
@@ -159,6 +175,9 @@ class Stage:
             dot = {"color": f"C{index}", "markersize": 7, "markeredgecolor": "white"}
             drawn += self._axes.plot(*path[-1:].T, "o", zorder=5, **dot)
             halo = [withStroke(linewidth=2.5, foreground="white")]
-            text = self._axes.text(*path[-1], f"  {probe.name}", color=_INK, weight="bold", path_effects=halo, zorder=6)
-            drawn.append(text)
+            style: dict[str, Any] = {"color": _INK, "weight": "bold", "path_effects": halo, "zorder": 6}
+            # A long name goes on towards the middle, not beyond the picture.
+            left = len(probe.name) > _LONG and proj_transform(*path[-1], self._axes.get_proj())[0] > 0
+            name = f"{short(probe.name)}  " if left else f"  {short(probe.name)}"
+            drawn.append(self._axes.text(*path[-1], name, ha="right" if left else "left", **style))
         return drawn

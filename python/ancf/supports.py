@@ -159,8 +159,20 @@ class Support(OnBody):
 
     def check_symmetry(self, core: _core.Model, element: str) -> None:
         """Raise `InputError` if the edge is not in its plane of symmetry or the body does not cross it squarely."""
-        if self.symmetry is None:
+        if self.symmetry is None or (wrong := self._unsymmetric(core, element)) is None:
             return
+        others = [self.model_copy(update={"symmetry": axis}) for axis in "xyz"]
+        fitting = [str(other.symmetry) for other in others if other._unsymmetric(core, element) is None]
+        reason = (
+            f"the edge must lie in a plane normal to {self.symmetry}"
+            if wrong == "r"
+            else f"the body must cross the plane normal to {self.symmetry} squarely, its {wrong} does not"
+        )
+        allowed = one_of(fitting) if fitting else "here no axis is allowed"
+        raise InputError(Mistake(("symmetry",), f"{reason}; {allowed}", show(self.symmetry)))
+
+    def _unsymmetric(self, core: _core.Model, element: str) -> str | None:
+        """Return the first nodal vector that at rest is not its own mirror image, None if there is none."""
         side, end = str(self.at)[5], str(self.at)[6]
         natural = core.nodes(self.body)[:, "xy".index(side)]
         edge = natural == (natural.max() if end == "1" else natural.min())
@@ -174,8 +186,8 @@ class Support(OnBody):
             values = vectors[edge, names.index(vector), "xyz".index(axis)]
             off = np.ptp(values) if vector == "r" else np.abs(values).max()
             if off > _FLAT * scales[vector]:
-                allowed = f"the edge must lie in a plane normal to this axis and the body cross it squarely, see {name}"
-                raise InputError(Mistake(("symmetry",), allowed, show(self.symmetry)))
+                return vector
+        return None
 
     def add(self, core: _core.Model, element: str) -> None:
         """Add the support to the compiled model."""

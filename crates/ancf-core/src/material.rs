@@ -70,9 +70,9 @@ impl Material {
         self.density
     }
 
-    /// The same with a density of at least `least`, kg/m3.
-    pub(crate) fn with_least_density(self, least: f64) -> Self {
-        Self { density: self.density.max(least), ..self }
+    /// The same with this density, kg/m3, if it has none.
+    pub(crate) fn with_density_where_none(self, density: f64) -> Self {
+        Self { density: if self.density == 0.0 { density } else { self.density }, ..self }
     }
 
     /// The plane-stress stiffness (Pa) for covariant strain components `xx`, `yy`, doubled `xy`, measured in

@@ -19,6 +19,8 @@ mod _core {
     #[pymodule_export]
     use super::model::Model;
     #[pymodule_export]
+    use super::model::curve;
+    #[pymodule_export]
     use super::run::Run;
     #[pymodule_export]
     use super::shape::Shape;

@@ -111,6 +111,18 @@ fn named<T: Copy>(
     checked(py, found.ok_or_else(|| InputError::new(argument, format!("\"{name}\""), allowed())))
 }
 
+/// Values at times `t` of the smooth curve through rows `[t, value]` on which supports move.
+#[pyfunction]
+pub fn curve<'py>(
+    py: Python<'py>,
+    rows: PyReadonlyArray2<'_, f64>,
+    t: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let rows = states(py, "rows", &rows, 2)?.iter().map(|row| [row[0], row[1]]).collect();
+    let course = checked(py, Course::table("rows", rows))?;
+    Ok(vector(py, t.as_array().iter().map(|t| course.at(*t)[0]).collect()))
+}
+
 #[pymethods]
 impl Model {
     #[new]

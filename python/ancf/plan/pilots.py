@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ancf.balance import EnergyWarning
+from ancf.courses import CourseWarning
 from ancf.errors import InputError, Interrupted
 from ancf.plan.cost import Costs
 from ancf.plan.ladder import Choice, apply
@@ -163,7 +164,9 @@ class Pilots:
             start = clock()
             assert not isinstance(scene.run, Modes)
             # What is tried may be wrong; what is chosen tells its warnings in its result.
-            with warnings.catch_warnings(action="ignore", category=EnergyWarning):
+            with warnings.catch_warnings():
+                for told in (EnergyWarning, CourseWarning):
+                    warnings.simplefilter("ignore", told)
                 result = solve(scene.model, scene.run, threads=threads, progress=watch, throw=False)
         except _TooSlowError:
             return failed(SLOW)

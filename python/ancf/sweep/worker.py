@@ -16,6 +16,7 @@ from queue import SimpleQueue
 from typing import Any
 
 from ancf.balance import EnergyWarning
+from ancf.courses import CourseWarning
 from ancf.errors import InputError
 from ancf.output import summarize
 from ancf.scene import Scene
@@ -52,7 +53,8 @@ def answer(scene: dict[str, Any], threads: int) -> dict[str, Any]:
 def main() -> None:
     """Answer until the input ends."""
     # The summary has them.
-    warnings.simplefilter("ignore", EnergyWarning)
+    for category in (EnergyWarning, CourseWarning):
+        warnings.simplefilter("ignore", category)
     # What a run prints must not be taken for an answer.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)

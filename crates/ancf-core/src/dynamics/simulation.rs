@@ -36,6 +36,8 @@ pub(super) struct Simulation<'a> {
     error: Vec<f64>,
     /// The coordinates of positions, and what is allowed of the error of each.
     allowed: Vec<(usize, f64)>,
+    /// Times at which steps under error control end, besides outputs: what begins between two steps, no estimate sees.
+    kinks: Vec<f64>,
     /// What belongs to the state `now` in a checkpoint, when checkpoints are wanted: a step that is being tried has
     /// changed the present ones already.
     accepted: (Controller, Memory, Counts),
@@ -49,8 +51,9 @@ impl<'a> Simulation<'a> {
     pub fn new(equations: Equations<'a>, options: &'a Options) -> Self {
         let n = equations.system.coordinates();
         let earlier = [equations.system.forces(), equations.system.factorizations()];
-        let mut allowed = Vec::new();
+        let (mut allowed, mut kinks) = (Vec::new(), Vec::new());
         if let Steps::Controlled(Tolerances { rtol, atol, .. }) = options.steps {
+            kinks.extend(equations.system.model().kinks(0.0, options.until, rtol));
             let coordinates = equations.inertia.positions().iter().flat_map(|a| 3 * a..3 * a + 3);
             allowed.extend(coordinates.map(|i| (i, atol + rtol * equations.newton.scale()[i])));
         }
@@ -64,6 +67,7 @@ impl<'a> Simulation<'a> {
             next: Instantaneous::default(),
             error: vec![0.0; n],
             allowed,
+            kinks,
             accepted: (Controller::new(0.0), Memory::default(), Counts::default()),
             counts: Counts::default(),
             earlier,
@@ -144,8 +148,13 @@ impl<'a> Simulation<'a> {
                     })?;
                 }
                 Steps::Controlled(tolerances) => {
-                    let target = outputs.peek().map_or(self.options.until, |t| t.min(self.options.until));
-                    self.controlled_step(tolerances, target, observer)?;
+                    let output = outputs.peek().map_or(self.options.until, |t| t.min(self.options.until));
+                    let kink = self.next_kink().filter(|kink| *kink < output - self.rounding());
+                    self.controlled_step(tolerances, kink.unwrap_or(output), observer)?;
+                    if kink == Some(self.next.t) {
+                        // Earlier accelerations say nothing about how they change from here on.
+                        self.next.lag = 0.0;
+                    }
                 }
             }
             self.counts.steps += 1;
@@ -184,6 +193,17 @@ impl<'a> Simulation<'a> {
         }
         let place = self.middles.collapsed(self.equations.system.model(), &self.next.q);
         place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, t: self.next.t }))
+    }
+
+    /// The next kink, if any.
+    fn next_kink(&self) -> Option<f64> {
+        let after = self.now.t + self.rounding();
+        self.kinks.get(self.kinks.partition_point(|kink| *kink <= after)).copied()
+    }
+
+    /// Times that are closer are the same but for rounding, s.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * self.options.until
     }
 
     /// A step within the tolerances that does not go beyond `target`.

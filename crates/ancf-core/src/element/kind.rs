@@ -110,12 +110,12 @@ impl Kind {
         let allowed = format!("none: {} has the strain of a solid, not of membrane and curvature", self.name());
         for (argument, value) in given {
             if let (true, Some(value)) = (self.is_solid(), value) {
-                return Err(InputError::new(argument, value, allowed));
+                return Err(InputError::new(argument, format!("{value:?}"), allowed));
             }
         }
         let allowed = "projected or full: nine motions of a thin48 cost no energy with lobatto, not six";
         let soft = self == Self::Thin48 && membrane == Some(Membrane::Lobatto);
-        InputError::check("membrane", Membrane::Lobatto.name(), !soft, allowed)?;
+        InputError::check("membrane", format!("{:?}", Membrane::Lobatto.name()), !soft, allowed)?;
         Ok(Variant { membrane: membrane.unwrap_or_default(), curvature: curvature.unwrap_or_default() })
     }
 

@@ -48,9 +48,9 @@ impl Body {
         Ok(Self { name: name.to_owned(), grid, plate, variant, first_vector })
     }
 
-    /// The same with a density of at least `least`, kg/m3.
-    pub(super) fn with_least_density(&self, least: f64) -> Self {
-        let material = self.plate.material.with_least_density(least);
+    /// The same with this density, kg/m3, if it has none.
+    pub(super) fn with_density_where_none(&self, density: f64) -> Self {
+        let material = self.plate.material.with_density_where_none(density);
         Self { plate: Plate { material, ..self.plate }, ..self.clone() }
     }
 

@@ -2,6 +2,8 @@
 
 use crate::error::InputError;
 
+use super::knots::knots;
+
 /// The factor of a load as a function of time (s) in motion, of the load factor in statics.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum History {
@@ -57,10 +59,9 @@ impl History {
         }
     }
 
-    /// Where the factor changes its slope.
-    pub fn kinks(&self) -> impl Iterator<Item = f64> {
-        let rows = if let Self::Table(rows) = self { rows.as_slice() } else { &[] };
-        rows.iter().map(|row| row[0])
+    /// Where the factor changes its slope by more than what straight lines smooth out within `tolerance` of the largest.
+    pub fn kinks(&self, tolerance: f64) -> Vec<f64> {
+        if let Self::Table(rows) = self { knots(rows, tolerance) } else { Vec::new() }
     }
 }
 

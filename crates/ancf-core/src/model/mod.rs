@@ -2,6 +2,7 @@
 
 mod body;
 mod history;
+mod knots;
 mod load;
 mod prescribed;
 mod rigid;
@@ -132,16 +133,20 @@ impl Model {
         &self.loads
     }
 
-    /// The same model, every body with a density of at least `least`, kg/m3.
-    pub(crate) fn with_least_density(&self, least: f64) -> Self {
-        let bodies = self.bodies.iter().map(|body| body.with_least_density(least)).collect();
+    /// The same model, bodies that have no density with this one, kg/m3.
+    pub(crate) fn with_density_where_none(&self, density: f64) -> Self {
+        let bodies = self.bodies.iter().map(|body| body.with_density_where_none(density)).collect();
         Self { bodies, ..self.clone() }
     }
 
-    /// The times, or load factors, strictly between two at which a load changes its rate, in the order they are met.
-    pub fn kinks(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
+    /// The times, or load factors, strictly between two at which a load changes its rate, or a table that moves a support
+    /// has a row, in the order they are met. Left out is what straight lines smooth out within `tolerance`, relative to the
+    /// largest value of each table.
+    pub fn kinks(&self, from: f64, to: f64, tolerance: f64) -> impl Iterator<Item = f64> + use<> {
         let between = |t: &f64| from.min(to) < *t && *t < from.max(to);
-        let mut kinks: Vec<f64> = self.loads.iter().flat_map(|load| load.history.kinks()).filter(between).collect();
+        let of_loads = self.loads.iter().flat_map(|load| load.history.kinks(tolerance));
+        let of_supports = self.motions.iter().flat_map(|motion| motion.kinks(tolerance));
+        let mut kinks: Vec<f64> = of_loads.chain(of_supports).filter(between).collect();
         kinks.sort_by(|a, b| ((a - from).abs()).total_cmp(&(b - from).abs()));
         kinks.dedup();
         kinks.into_iter()

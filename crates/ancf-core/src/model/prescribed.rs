@@ -4,6 +4,8 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 use crate::error::InputError;
 
+use super::knots::knots;
+
 /// A number as a function of time (s), with its first and second derivative.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Course {
@@ -43,6 +45,12 @@ impl Course {
             }
             Self::Table(spline) => spline.at(t),
         }
+    }
+
+    /// Times between which the rows of a table are straight lines within `tolerance` of the largest value: steps that end
+    /// there miss none of them.
+    fn kinks(&self, tolerance: f64) -> Vec<f64> {
+        if let Self::Table(spline) = self { knots(&spline.rows, tolerance) } else { Vec::new() }
     }
 }
 
@@ -129,6 +137,13 @@ impl SupportMotion {
             InputError::check("rotation.axis", format!("{axis:?}"), length > 0.0, "an axis that has a direction")?;
         }
         Ok(())
+    }
+
+    /// Times between which the rows of its tables are straight lines within `tolerance` of the largest value of each.
+    pub(super) fn kinks(&self, tolerance: f64) -> Vec<f64> {
+        let courses = self.translation.iter().map(|(_, course)| course);
+        let courses = courses.chain(self.rotation.iter().map(|(_, _, angle)| angle));
+        courses.flat_map(|course| course.kinks(tolerance)).collect()
     }
 
     /// Position, velocity and acceleration of a nodal vector whose reference value is `reference`: a position, which is

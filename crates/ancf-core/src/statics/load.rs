@@ -62,7 +62,7 @@ pub(super) fn release(path: &mut Path<'_>, options: &Options, observer: &mut dyn
 pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn Observer) -> Result<(), Failure> {
     let mut step = options.first_step.unwrap_or(f64::INFINITY);
     for &t in &options.load_factors {
-        for t in path.system.model().kinks(path.at.load.t, t).chain([t]) {
+        for t in path.system.model().kinks(path.at.load.t, t, 0.0).chain([t]) {
             reach(path, Load { t, held: 0.0 }, options, &mut step, observer)?;
         }
         path.output(observer);

@@ -62,7 +62,7 @@ pub(super) fn settle(
     most: usize,
     observer: &dyn Observer,
 ) -> Result<Point, Failure> {
-    let model = path.system.model().with_least_density(WEIGHTLESS);
+    let model = path.system.model().with_density_where_none(WEIGHTLESS);
     let mut damped = System::new(Arc::new(model)).map_err(|e| Failure::from_linear(e, 0, |_| String::new()))?;
     let options = NewtonOptions { tolerance: TOLERANCE, max_iterations: ITERATIONS, ..NewtonOptions::default() };
     let mut newton = Newton::new(&damped, options);

@@ -5,5 +5,6 @@ mod conservation;
 mod control;
 mod failures;
 mod orders;
+mod pulses;
 mod restart;
 mod rigid;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::common::{options, pendulum_of, rubber};
 use ancf_core::assembly::System;
 use ancf_core::dynamics::{self, Checkpoint, Method, Options, Steps, Tolerances};
-use ancf_core::model::Model;
+use ancf_core::model::{History, Load, LoadKind, Model};
 use ancf_core::observe::{Observer, State};
 use ancf_core::report::{Outcome, Run};
 use ancf_core::{Damping, Material};
@@ -56,7 +56,11 @@ fn run(model: &Model, options: &Options, questions: usize, from: &[u8]) -> (Stop
 fn a_run_that_is_stopped_anywhere_goes_on_to_the_same_bits() {
     let steel = || pendulum_of(2, 0.0005, Material::new(2e11, 0.3, 7810.0).unwrap());
     let viscous = rubber().with_damping(Damping { mass: 0.1, viscosity: 1e-4 }).unwrap();
+    let mut struck = pendulum_of(2, 0.01, rubber());
+    let blow = History::table((0..40).map(|k| [0.005 * f64::from(k), f64::from(k % 2)]).collect()).unwrap();
+    struck.add_load(Load { kind: LoadKind::Gravity([20.0, 0.0, 0.0]), history: blow }).unwrap();
     let cases = [
+        (struck, Method::EnergyMomentum, Steps::controlled(1e-3)),
         (steel(), Method::Esdirk, Steps::controlled(1e-3)),
         (steel(), Method::TrBdf2, Steps::controlled(3e-3)),
         (steel(), Method::Hht { alpha: -0.05 }, Steps::controlled(1e-3)),
