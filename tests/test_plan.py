@@ -1,8 +1,10 @@
 """Plans: what is chosen is precise enough, against another element on a fine mesh and against closed forms."""
 
+import io
 import json
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ from ancf.plan.cost import Costs, Rates
 from ancf.plan.errors import Side, distance, scales
 from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Rung, Stepping, coarsest
 from ancf.plan.planner import LEAST, MOST, PROPORTION
-from ancf.plan.rigid import deflection
+from ancf.plan.rigid import as_rigid, deflection
 from ancf.plan.shear import shear
 from ancf.plan.symmetry import halved
 from ancf.solve import solve
@@ -498,3 +500,48 @@ def test_the_plan_is_as_long_as_the_scene_deserves() -> None:
     assert long.seconds_as_written is not None
     assert long.seconds_as_written > short.seconds_as_written
     assert long.budget == min(max(PROPORTION * long.seconds_as_written, LEAST), MOST)
+
+
+def struck(shape: ancf.Rectangle | ancf.Cylinder, at: str | tuple[float, float], size: float) -> ancf.Scene:
+    """Return free steel that a force of 2 ms strikes within 50 ms."""
+    pulse = [(0.0, 0.0), (1e-3, 1.0), (2e-3, 0.0)]
+    (_, x), (_, y) = ancf.Model(bodies={"p": shape}).domain("p")
+    model = ancf.Model(
+        bodies={"p": shape},
+        loads=[ancf.Force(at=at, force=(0.0, 0.0, size), history=pulse)],
+        probes=[ancf.Probe(name="A", at=(x, y), quantity="displacement")],
+    )
+    return ancf.Scene("", model, ancf.Dynamic(until=0.05, step=1e-4, every=5e-3))
+
+
+def test_a_pulse_between_the_moments_of_a_rigid_motion_bends_it() -> None:
+    """The corner of the elastic plate is 0.155 off the rigid one."""
+    plate = ancf.Rectangle(size=(0.5, 0.3), divisions=(6, 4), thickness=3e-3, material=STEEL)
+    scene = struck(plate, (0.25, 0.15), 3000.0)
+    _, bent = as_rigid(pilots.Pilots(scene, ["A"], np.inf, 1), ((1, 1),), THIN[0], 0.1)
+    assert max(bent) > 0.1
+
+
+def test_rigid_motions_are_as_precise_in_time_as_asked() -> None:
+    gutter = ancf.Cylinder(
+        radius=0.3, angle=(0.0, 3.0), length=(0.0, 0.4), divisions=(6, 4), thickness=3e-3, material=STEEL
+    )
+    scene = struck(gutter, "corner:x0y0", 100.0)
+    pilot, _ = as_rigid(pilots.Pilots(scene, ["A"], np.inf, 1), ((1, 1),), THIN[0], 0.01)
+    assert pilot is not None
+    rung, tight = pilot.choice.rung, Stepping("rigid", rtol=1e-9)
+    exact = pilots.Pilots(scene, ["A"], np.inf, 1).run(Choice(rung, tight)).values
+    assert distance(pilot.values, exact, scales(exact)) < 0.01
+
+
+def test_what_moves_by_rounding_only_is_told() -> None:
+    model = cantilever()
+    still = ancf.Model(bodies=model.bodies, supports=model.supports, probes=model.probes)
+    with pytest.raises(ancf.InputError, match="does not change"):
+        ancf.plan(still, run=ancf.Dynamic(until=0.1, step=1e-3), want="A", threads=1)
+
+
+def test_errors_of_zero_can_be_drawn() -> None:
+    plan = ancf.plan(cantilever(), run=ancf.Static(), want="A", tol=0.1)
+    none = [replace(row, error=0.0) for row in plan.rows]
+    replace(plan, rows=none).plot().savefig(io.BytesIO())

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import RIGID, apply
-from ancf.plan.pilots import Pilot, Pilots
+from ancf.plan.pilots import SLOW, Pilot, Pilots
 from ancf.plan.report import Plan, Row
 from ancf.plan.search import Search
 from ancf.plan.shear import told
@@ -46,8 +46,11 @@ def of_search(
         reasons.append(f"Refining {finest} along {where} changed {side.difference:.1g}, rate {rate}.")
     if not converged:
         slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
+        finer = [p for p in pilots.done if not p.ok and p.choice.rung.elements > finest.elements and p.outcome != SLOW]
         if pilots.interrupted:
             why = "the plan was interrupted"
+        elif finer:
+            why = f"finer meshes do not reach their end ({finer[-1].choice.rung}: {finer[-1].outcome})"
         elif slow:
             why = "differences hardly shrink with the mesh, as at a singular point or where the motion is chaotic"
         else:

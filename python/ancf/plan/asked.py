@@ -10,8 +10,12 @@ import numpy as np
 from ancf.errors import InputError, Mistake, Mistakes, one_of, show
 from ancf.model import Model
 from ancf.plan.errors import Values, scales
+from ancf.result import Result
 from ancf.run import Dynamic, Static
 from ancf.scene import Scene, load_scene
+
+_ROUNDING = 1e-12
+"""Relative changes of nodal coordinates below it are none."""
 
 
 def scene_of(given: Scene | Model | str | os.PathLike[str], run: Static | Dynamic | None) -> Scene:
@@ -60,9 +64,14 @@ def check(scene: Scene, tol: float, budget: float | None) -> None:
     mistakes.check()
 
 
-def changes(values: Values, names: list[str]) -> list[float]:
-    """Return the largest changes of what is wanted; raise `InputError` if there is none."""
-    scale = scales(values)
+def still(result: Result) -> bool:
+    """Tell whether nothing moves but by rounding."""
+    return bool(np.abs(result.q - result.q[0]).max() <= _ROUNDING * np.abs(result.q[0]).max())
+
+
+def changes(values: Values, names: list[str], result: Result | None = None) -> list[float]:
+    """Return the largest changes of what is wanted; raise `InputError` if there is none or `result` is still."""
+    scale = [0.0] * len(names) if result is not None and still(result) else scales(values)
     mistakes = Mistakes()
     for name, size in zip(names, scale, strict=True):
         if size == 0.0:

@@ -25,10 +25,15 @@ def scales(values: Values) -> list[float]:
 
 
 def distance(one: Values, other: Values, scale: Sequence[float]) -> float:
-    """Return the largest difference over all states and quantities, relative to their scales."""
+    """Return the largest difference over all states and quantities, relative to their scales.
+
+    Infinite where a quantity that has no scale, because it does not change, differs.
+    """
     worst = 0.0
     for a, b, size in zip(one, other, scale, strict=True):
-        worst = max(worst, float(np.linalg.norm(a - b, axis=1).max()) / size)
+        off = float(np.linalg.norm(a - b, axis=1).max())
+        if off > 0.0:
+            worst = max(worst, off / size if size > 0.0 else np.inf)
     return worst
 
 

@@ -10,6 +10,8 @@ from ancf.plan.report import Plan
 from ancf.probes import QUANTITIES
 
 _STYLES = ("-", "--", ":")
+_ROUNDING = 1e-16
+"""Errors that are smaller, or none, are drawn here: the axis is logarithmic."""
 
 
 def draw(plan: Plan) -> Figure:
@@ -30,13 +32,15 @@ def draw(plan: Plan) -> Figure:
         left, right = figure.subplots(1, 2)
         tried: dict[str, list[tuple[float, float]]] = {}
         for row in plan.rows:
-            if row.error:
-                tried.setdefault(" ".join(row.settings.split()[:2]), []).append((row.seconds, row.error))
+            if row.error is not None:
+                error = max(row.error, _ROUNDING)
+                tried.setdefault(" ".join(row.settings.split()[:2]), []).append((row.seconds, error))
         for name, points in tried.items():
             left.loglog(*zip(*points, strict=True), "o", markersize=4, label=name)
         row = plan.rows[plan.chosen]
-        if row.error:
-            left.loglog(row.seconds, row.error, "o", markersize=11, fillstyle="none", color="black", label="chosen")
+        if row.error is not None:
+            error = max(row.error, _ROUNDING)
+            left.loglog(row.seconds, error, "o", markersize=11, fillstyle="none", color="black", label="chosen")
         left.axhline(plan.tol, color="gray", linewidth=1)
         for axis in (left.xaxis, left.yaxis):
             axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))

@@ -21,6 +21,9 @@ from ancf.solve import solve
 
 FloatArray = NDArray[np.float64]
 
+SLOW = "slower than others"
+"""Outcome of a pilot that has used up its time, so that it may be run again."""
+
 
 @dataclass(frozen=True)
 class Pilot:
@@ -128,7 +131,7 @@ class Pilots:
         KeyboardInterrupt
             On Ctrl-C; what it had is not kept.
         """
-        if choice in self._done and (self._done[choice].ok or self._done[choice].outcome != _SLOW):
+        if choice in self._done and (self._done[choice].ok or self._done[choice].outcome != SLOW):
             return self._done[choice]
         self.runs += 1
         pilot = self._run(choice, limit if self.left > 0.0 else 0.0)
@@ -155,7 +158,7 @@ class Pilots:
             return Pilot(choice, None, [], clock() - start, outcome)
 
         if limit <= 0:
-            return failed(_SLOW)
+            return failed(SLOW)
         try:
             scene = apply(self.scene, choice)
             start = clock()
@@ -166,7 +169,7 @@ class Pilots:
                     warnings.simplefilter("ignore", told)
                 result = solve(scene.model, scene.run, threads=threads, progress=watch, throw=False)
         except _TooSlowError:
-            return failed(_SLOW)
+            return failed(SLOW)
         except InputError as error:
             return failed(str(error))
         except Interrupted as stopped:
@@ -175,6 +178,3 @@ class Pilots:
         if result.status != "ok":
             return failed(result.reason)
         return Pilot(choice, result, [result.probes[name].value for name in self.want], seconds, "ok")
-
-
-_SLOW = "slower than others"

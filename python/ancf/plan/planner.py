@@ -184,7 +184,7 @@ def _timings(
         rung = Rung(family, tuple((2 * x, 2 * y) for x, y in base))
         exact = reference(pilots, rung, tol)
         if exact.ok:
-            changes(exact.values, pilots.want)
+            changes(exact.values, pilots.want, exact.result)
             found = steppings(pilots, rung, exact.values, tol)
             if not found:
                 assert exact.choice.stepping is not None

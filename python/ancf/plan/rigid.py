@@ -13,6 +13,7 @@ from ancf.model import Model
 from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import RIGID, Choice, Family, Rung, Stepping, apply
 from ancf.plan.pilots import Pilot, Pilots
+from ancf.plan.timing import SHARE
 from ancf.result import Result
 from ancf.run import Dynamic
 from ancf.solve import solve
@@ -20,21 +21,24 @@ from ancf.solve import solve
 FloatArray = NDArray[np.float64]
 
 _MOMENTS = 12
-"""States along the motion at which the deflection is estimated."""
+"""Times, evenly along the motion, at which the deflection is estimated, and at how many of the largest values of each
+load's history."""
 _DYNAMIC = 2.0
 """A load that comes suddenly deflects a structure up to twice as far as one that comes slowly."""
 _MOST_COORDINATES = 1500
 _HELD = 1e-9
 RIGID_SHARE = 0.7
 """Part of the tolerance below which the estimated deflection of a rigid body is no matter."""
-_SURELY_RIGID, _STEPS = 0.02, 60
-"""Part of the tolerance up to which the estimate is believed, and the steps of the motion that checks others."""
+_SURELY_RIGID = 0.02
+"""Part of the tolerance up to which the estimate is believed."""
+_TIGHTENED = 10
+"""Times that the steps of the rigid motion are shortened until its error in time is small enough."""
 
 
 def deflection(model: Model, rigid: Result, limits: Sequence[float] | None = None) -> list[float]:
     """Estimate how far each probe is from where a rigid motion has it.
 
-    At moments of the rigid motion the loads and the inertia act on the elastic body as if they stayed.
+    At the states of the rigid motion the loads and the inertia act on the elastic body as if they stayed.
 
     Parameters
     ----------
@@ -58,8 +62,8 @@ def deflection(model: Model, rigid: Result, limits: Sequence[float] | None = Non
     free = core.free().astype(int)
     mass = _dense(core.mass(), core.coordinates)
     worst = np.zeros(len(model.probes))
-    for k in np.unique(np.linspace(0, len(rigid.t) - 1, _MOMENTS).astype(int)):
-        q, t = rigid.q[k], float(rigid.t[k])
+    for k, t in enumerate(rigid.t.tolist()):
+        q = rigid.q[k]
         load = core.external_force(q, t) - mass @ rigid.a[k]
         stiffness = _dense(core.tangent(q, t), core.coordinates)[np.ix_(free, free)]
         # Loads and inertia together do no work in the rigid motions that supports leave: any stiffness holds these.
@@ -86,30 +90,53 @@ def as_rigid(
     """Run the scene with rigid bodies, and estimate what deflection changes of the wanted quantities, relative."""
     curved = any(body.shape != "rectangle" for body in pilots.scene.model.bodies.values())
     divisions = tuple((4 * x, 4 * y) for x, y in base) if curved else base
-    rtol = min(1e-3, 1e-2 * tol)
-    pilot = pilots.run(Choice(Rung(RIGID, divisions), Stepping("rigid", rtol=rtol)), pilots.left / 4)
-    if not pilot.ok or pilot.result is None:
+    pilot = _precise(pilots, Rung(RIGID, divisions), tol)
+    if pilot is None:
         return None, []
     scale = scales(pilot.values)
-    if min(scale) == 0.0:
-        return None, []
     # Deflections need more than the corners.
     finer = Rung(family, tuple((max(x, 2), max(y, 2)) for x, y in divisions))
-    assert isinstance(pilots.scene.run, Dynamic)
     again = apply(pilots.scene, replace(pilot.choice, rung=replace(finer, family=RIGID)))
     assert isinstance(again.run, Dynamic)
-    result = solve(again.model, again.run, threads=1, throw=False)
+    moments = _moments(again.model, again.run.until)
+    run = again.run.model_copy(update={"every": None, "outputs": moments})
+    result = solve(again.model, run, threads=1, throw=False)
     elastic = apply(pilots.scene, Choice(finer)).model
     names = [probe.name for probe in elastic.probes]
     limits = [RIGID_SHARE * tol * dict(zip(pilots.want, scale, strict=True)).get(name, np.inf) for name in names]
     bent = dict(zip(names, deflection(elastic, result, limits), strict=True))
     errors = [bent[name] / size for name, size in zip(pilots.want, scale, strict=True)]
     if _SURELY_RIGID * tol < max(errors) <= RIGID_SHARE * tol:
-        # Loads that change as the body oscillates add up: see what it does.
-        until = pilots.scene.run.until
-        moved = pilots.run(Choice(finer, Stepping("esdirk", step=until / _STEPS)), pilots.left / 4)
+        # Loads that change as the body oscillates add up: see what it does. No fixed steps, which a pulse may escape.
+        moved = pilots.run(Choice(finer, Stepping("esdirk", rtol=1e-2 * tol)), pilots.left / 4)
         errors.append(distance(moved.values, pilot.values, scale) if moved.ok else np.inf)
     return pilot, errors
+
+
+def _precise(pilots: Pilots, rung: Rung, tol: float) -> Pilot | None:
+    """Run rigid bodies with ever shorter steps until they change little; None if they cannot be run or do not move."""
+    stepping = Stepping("rigid", rtol=min(1e-3, 1e-2 * tol))
+    pilot = pilots.run(Choice(rung, stepping), pilots.left / 4)
+    for _ in range(_TIGHTENED):
+        if not pilot.ok or min(scales(pilot.values)) == 0.0:
+            return None
+        stepping = stepping.tighter()
+        tight = pilots.run(Choice(rung, stepping), pilots.left / 4)
+        if not tight.ok or distance(tight.values, pilot.values, scales(tight.values)) <= SHARE * tol:
+            break
+        pilot = tight
+    return pilot
+
+
+def _moments(model: Model, until: float) -> list[float]:
+    """Return times along a motion, and those at which the histories of loads are the largest: pulses may be short."""
+    times = [np.linspace(0.0, until, _MOMENTS)]
+    for load in model.loads:
+        if load.history is not None and not isinstance(load.history, str):
+            t, factor = np.array(load.history).T
+            inside = (t > 0.0) & (t < until)
+            times.append(t[inside][np.argsort(-np.abs(factor[inside]))[:_MOMENTS]])
+    return [float(t) for t in np.unique(np.concatenate(times))]
 
 
 def _dense(entries: tuple[NDArray[np.uint64], NDArray[np.uint64], FloatArray], n: int) -> FloatArray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ancf.plan.asked import still
 from ancf.plan.errors import Values, distance, scales
 from ancf.plan.ladder import LOOSEST, Choice, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
@@ -71,7 +72,7 @@ def reference(pilots: Pilots, rung: Rung, tol: float) -> Pilot:
     first = pilots.run(Choice(rung, Stepping("esdirk", rtol=min(LOOSEST, tol))), pilots.left / 6)
     if not first.ok:
         first = pilots.run(Choice(rung, Stepping("verlet", rtol=min(LOOSEST, tol))), pilots.left / 6)
-    if not first.ok:
+    if first.result is None or still(first.result):
         return first
     scale = scales(first.values)
     # Error control bounds what steps add to positions; velocities and strains need more care, so that the cheapest
