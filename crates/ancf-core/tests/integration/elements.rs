@@ -94,7 +94,7 @@ fn variants_that_an_element_does_not_have_are_refused() {
     for element in [Kind::Full48a, Kind::Full48b] {
         assert_eq!(membrane(element, Membrane::Projected).argument, "membrane");
         let error = add(Plate { curvature: Some(CurvatureLaw::Paper), ..steel(element, 0.1) });
-        assert_eq!((error.argument.as_str(), error.value.as_str()), ("curvature", "paper"));
+        assert_eq!((error.argument.as_str(), error.value.as_str()), ("curvature", "\"paper\""));
         assert!(error.allowed.contains("solid"), "{error}");
     }
 }
