@@ -97,6 +97,20 @@ def test_dense_eigenvalues_are_the_same() -> None:
         np.testing.assert_allclose(overlap[:10], 1, atol=1e-6)
 
 
+@pytest.mark.parametrize("membrane", ["projected", "lobatto"])
+def test_bending_of_a_clamped_foil_is_no_zero(membrane: Literal["projected", "lobatto"]) -> None:
+    """Of 1 um on 1 m its first eigenvalue is as small as rounding, but a clamped body has no rigid motion."""
+    foil = ancf.Rectangle(size=(1.0, 0.01), divisions=(12, 1), thickness=1e-6, material=STEEL, membrane=membrane)
+    model = ancf.Model(bodies={"foil": foil}, supports=[ancf.Support(at="edge:x0", clamp=True)])
+    # cos(x) cosh(x) = -1, and = 1.
+    clamped, free = np.array([1.8751, 4.6941, 7.8548]), np.array([4.7300, 7.8532])
+    unit = np.sqrt(STEEL.E * 1e-12 / 12 / STEEL.density) / (2 * np.pi)
+    assert ancf.modes(model, count=3).frequency == pytest.approx(clamped**2 * unit, rel=8e-3)
+    found = ancf.modes(ancf.Model(bodies={"foil": foil}), count=8).frequency
+    assert np.all(found[:6] == 0.0)
+    assert found[6:] == pytest.approx(free**2 * unit, rel=8e-3)
+
+
 @pytest.mark.parametrize("count", [4, 14])
 def test_rigid_motions_are_zeros(count: int) -> None:
     plate = ancf.Rectangle(size=(0.3, 0.2), divisions=(3, 2), thickness=1e-3, material=STEEL)

@@ -127,7 +127,10 @@ def test_nothing_is_promised_of_a_side_without_a_coarser_neighbour() -> None:
 
 
 def test_a_family_that_locks_is_left_for_another_of_its_element() -> None:
-    """On coarse meshes of a thin cap the membranes that lock change least; they would need 64 x 64 elements."""
+    """On coarse meshes of a thin cap the membranes that lock change least; they would need 64 x 64 elements.
+
+    Which of the others is the cheapest, from 8 x 8 to 16 x 12, depends on the clock.
+    """
 
     def cap(divisions: tuple[int, int], element: str) -> ancf.Model:
         body = ancf.Sphere(
@@ -150,7 +153,8 @@ def test_a_family_that_locks_is_left_for_another_of_its_element() -> None:
     exact = ancf.solve_static(cap((24, 24), "thin48")).probes["A"].value
     assert plan.converged
     assert distance([plan.result.probes["A"].value], [exact], scales([exact])) < 1e-2
-    assert plan.settings.rung.elements <= 64
+    assert plan.settings.rung.family.membrane == "projected"
+    assert plan.settings.rung.elements <= 16 * 16
 
 
 def test_threads_are_those_that_take_the_least_predicted_time() -> None:

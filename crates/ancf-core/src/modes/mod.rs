@@ -33,7 +33,8 @@ pub struct Options {
 /// A mode of small oscillations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
-    /// Square of the circular frequency, 1/s2: 0 where it is nothing but rounding, negative where the state is unstable.
+    /// Square of the circular frequency, 1/s2: 0 of rigid motions, where it is nothing but rounding; negative where the state is
+    /// unstable.
     pub eigenvalue: f64,
     /// Changes of all nodal coordinates, with `x . M x` = 1.
     pub shape: Vec<f64>,
@@ -108,6 +109,8 @@ struct Search<'a> {
     mass: SymmetricMatrix,
     /// Where the loads that follow the body are.
     at: (Vec<f64>, Vec<f64>),
+    /// Number of rigid motions that no support holds.
+    rigid: usize,
     shift: f64,
     lanczos: Lanczos,
     /// The leading pairs that have converged.
@@ -126,10 +129,11 @@ impl<'a> Search<'a> {
         };
         let (mass, stiffness) = (matrix(1.0, 0.0), matrix(0.0, 1.0));
         let at = system.tangent_at().clone();
+        let rigid = system.model().rigid_motions(&options.q).len();
         let shift = bending_scale(system);
         let lanczos = Lanczos::new(system);
-        let mut search =
-            Self { system, count: options.count, stiffness, mass, at, shift, lanczos, converged: Vec::new() };
+        let (count, converged) = (options.count, Vec::new());
+        let mut search = Self { system, count, stiffness, mass, at, rigid, shift, lanczos, converged };
         for _ in 0..SHIFTS {
             match search.factorize(-search.shift) {
                 Ok(inertia) if inertia.is_positive_definite() => return Ok(search),
@@ -269,14 +273,21 @@ impl<'a> Search<'a> {
     }
 
     /// The modes that have converged.
+    ///
+    /// Of eigenvalues within rounding those of rigid motions are zero, the smallest, and what is negative: bending of a very thin
+    /// body is as small, but its value is worth more than none.
     fn modes(&self) -> Vec<Mode> {
-        let mode = |ritz: &Ritz| {
-            let shape = self.lanczos.vector(ritz);
-            let eigenvalue = self.eigenvalue(ritz);
-            let rounding = ZERO * self.rounding(&shape);
-            Mode { eigenvalue: if eigenvalue.abs() <= rounding { 0.0 } else { eigenvalue }, shape }
-        };
-        self.converged.iter().map(mode).collect()
+        let mode = |ritz: &Ritz| Mode { eigenvalue: self.eigenvalue(ritz), shape: self.lanczos.vector(ritz) };
+        let mut modes: Vec<Mode> = self.converged.iter().map(mode).collect();
+        let rounded = |mode: &&mut Mode| mode.eigenvalue.abs() <= ZERO * self.rounding(&mode.shape);
+        let mut rounded: Vec<&mut Mode> = modes.iter_mut().filter(rounded).collect();
+        rounded.sort_by(|a, b| a.eigenvalue.abs().total_cmp(&b.eigenvalue.abs()));
+        for (place, mode) in rounded.into_iter().enumerate() {
+            if place < self.rigid || mode.eigenvalue < 0.0 {
+                mode.eigenvalue = 0.0;
+            }
+        }
+        modes
     }
 
     /// Refuses modes that loads without a potential couple: their oscillations have other frequencies.
