@@ -140,6 +140,14 @@ impl System {
         self.timers
     }
 
+    /// Adds the time that another system has spent on the same solve since it was made.
+    pub(crate) fn add_timers(&mut self, Timers { setup: _, assembly, scatter, factorization, solve }: Timers) {
+        self.timers.assembly += assembly;
+        self.timers.scatter += scatter;
+        self.timers.factorization += factorization;
+        self.timers.solve += solve;
+    }
+
     /// Says which coordinate an equation is for.
     pub fn describe(&self, equation: usize) -> String {
         let coordinate = self.numbering.coordinate[equation];

@@ -22,7 +22,7 @@ const FLATTENED: f64 = 6.0;
 const LEAST: f64 = 0.1;
 /// A limit point this close to the end of a step, relative to its length, is that end.
 const LIMIT: f64 = 0.05;
-/// A step in which the number of negative pivots changes though the load factor goes on becomes shorter by this share, until
+/// A step in which stability is lost though the load factor goes on becomes shorter by this share, until
 /// it changes the load factor by less than so much of it: a bifurcation is located as well as this.
 const BIFURCATION: [f64; 2] = [0.25, 5e-3];
 
@@ -147,7 +147,8 @@ impl Walk {
         match way.limit() {
             Some(share) if (LIMIT..1.0 - LIMIT).contains(&share) => return Ok(Step::Shortened(share)),
             None if length > self.shortest
-                && report.negative_pivots != way.from.negative_pivots
+                && stable
+                && report.negative_pivots > 0
                 && (way.t - way.from.load.t).abs() > BIFURCATION[1] * way.t.abs() =>
             {
                 return Ok(Step::Lost);

@@ -120,6 +120,7 @@ pub(super) fn settle(
             }
         }
     }
+    path.system.add_timers(damped.timers());
     path.forces += damped.forces();
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
