@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipk
@@ -163,3 +164,48 @@ def test_shells_jump_on_to_the_whole_load(model: Callable[[], ancf.Model]) -> No
     energy = result.energy
     strain = energy.membrane + energy.bending
     assert energy.loads[-1] - strain[-1] > 0.01 * strain[-1]
+
+
+def pressed() -> ancf.Model:
+    """A part of a cylinder, clamped at one straight edge, under a pressure: it has no potential at the free edges."""
+    shape = ancf.Cylinder(
+        radius=1.4,
+        angle=(0.0, 2.1665),
+        length=(0.0, 3.74),
+        divisions=(4, 4),
+        thickness=0.0367,
+        material=ancf.Material(E=2.0755e9, nu=0.45),
+    )
+    return ancf.Model(
+        bodies={"shell": shape},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.Pressure(pressure=26765.0)],
+    )
+
+
+def whole_tangent(model: ancf.Model, q: NDArray[np.float64], t: float) -> NDArray[np.float64]:
+    """Minus the derivative of all forces, by differences."""
+    core = model.assemble("ramp")
+    free = core.free()
+
+    def force(at: NDArray[np.float64]) -> NDArray[np.float64]:
+        return (core.internal_force(at) - core.external_force(at, t))[free]
+
+    step = 1e-6
+    unit = step * np.eye(len(q))
+    return np.stack([(force(q + unit[i]) - force(q - unit[i])) / (2 * step) for i in free], axis=1)
+
+
+@pytest.mark.parametrize("factors", [[0.75, 0.9], list(np.linspace(0.05, 0.9, 18))])
+def test_a_pressure_at_free_edges_snaps_a_shell_where_its_whole_tangent_is_lost(factors: list[float]) -> None:
+    """At 0.762 in any steps. The symmetric half of the tangent is not definite before, from 0.70 of the load on."""
+    model = pressed()
+    result = ancf.solve_static(model, load_factors=factors)
+    np.testing.assert_allclose(result.jumps, [0.762], rtol=3e-3)
+    np.testing.assert_array_equal(result.negative_pivots, 0)
+    before = int(np.argmin(np.abs(result.t - 0.75)))
+    for state in (before, -1):
+        tangent = whole_tangent(model, result.q[state], result.t[state])
+        assert np.linalg.eigvals(tangent).real.min() > 0
+        if state == before:
+            assert np.linalg.eigvalsh(tangent + tangent.T)[0] < 0

@@ -99,7 +99,8 @@ class Result:
     momentum, angular_momentum : ndarray, shape (states, 3)
         kg m/s, and kg m2/s about the origin.
     negative_pivots : ndarray of int, shape (states,)
-        Negative eigenvalues of the tangent, 0 where the equilibrium is stable; -1 where they were not counted.
+        Eigenvalues of the tangent with a negative real part, 0 where the equilibrium is stable; -1 where they were not
+        counted.
     counts : dict of str to int
         elements, dofs, steps, rejected and its causes (inaccurate, unsolved, singular, not_finite), iterations,
         forces (evaluations), factorizations.

@@ -25,7 +25,7 @@ pub struct State {
     pub momentum: [f64; 3],
     /// Angular momentum about the origin, kg m2/s.
     pub angular_momentum: [f64; 3],
-    /// Negative pivots of the tangent near this state, where they were counted.
+    /// Negative pivots of the tangent near this state that count as instabilities, where they were counted.
     pub negative_pivots: Option<usize>,
 }
 

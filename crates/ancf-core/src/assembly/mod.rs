@@ -2,7 +2,8 @@
 //!
 //! `numbering` gives the free coordinates their numbers, `columns` the entries of the tangent their places; `parts` cuts
 //! the model into tasks, `scatter` sums what their elements give, `tangent` their tangents. `loads` holds what acts on the model (`follower` what turns with it), `mass` its inertia. `forces` evaluates elements
-//! and sums them, `solve` factorises the tangent and solves with it.
+//! and sums them, `solve` factorises the tangent and solves with it, `stability` counts the ways that lead away from
+//! a state.
 
 mod columns;
 mod follower;
@@ -13,6 +14,7 @@ mod numbering;
 mod parts;
 mod scatter;
 mod solve;
+mod stability;
 mod tangent;
 mod totals;
 

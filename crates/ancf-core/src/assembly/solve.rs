@@ -60,32 +60,61 @@ impl System {
 
     /// Solves for the free coordinates: `solution = tangent^-1 right`, zero where fixed.
     ///
-    /// The factorised tangent has the symmetric half of the loads' part only. The skew half is brought in by GMRES with
-    /// the factorised tangent as preconditioner; its eigenvalues then lie around 1 on a line, so a few products suffice.
+    /// The factorised tangent has the symmetric half of the loads' part only; the skew half is brought in afterwards.
     pub fn solve(&mut self, right: &[f64], solution: &mut [f64]) {
         let start = Instant::now();
-        let Self { numbering, factorization, free, loads, tangent_at, blocks, model, .. } = self;
-        let mut solve = |right: &[f64], solution: &mut [f64]| {
-            for (value, &coordinate) in free.iter_mut().zip(&numbering.coordinate) {
-                *value = right[coordinate];
-            }
-            factorization.solve(free);
-            for (value, &coordinate) in free.iter().zip(&numbering.coordinate) {
-                solution[coordinate] = *value;
-            }
-        };
         solution.fill(0.0);
-        solve(right, solution);
-        if tangent_at.1.iter().any(|factor| *factor != 0.0) {
-            let mut skew = vec![0.0; right.len()];
-            let with_skew = |x: &[f64], y: &mut [f64]| {
-                skew.fill(0.0);
-                loads.subtract_skew_times(blocks, model.reference(), tangent_at, x, &mut skew);
-                solve(&skew, y);
-                y.iter_mut().zip(x).for_each(|(y, x)| *y += x);
-            };
-            gmres(with_skew, solution, SKEW_TOLERANCE, SKEW_PRODUCTS);
+        self.solve_symmetric(right, solution);
+        if self.is_skew() {
+            self.bring_in_skew(solution);
         }
         self.timers.solve += start.elapsed();
+    }
+
+    /// Whether the tangent has a skew half.
+    pub(super) fn is_skew(&self) -> bool {
+        self.tangent_at.1.iter().any(|factor| *factor != 0.0)
+    }
+
+    /// Solves with the symmetric half of the tangent; fixed coordinates stay as they are.
+    fn solve_symmetric(&mut self, right: &[f64], solution: &mut [f64]) {
+        let Self { numbering, factorization, free, .. } = self;
+        for (value, &coordinate) in free.iter_mut().zip(&numbering.coordinate) {
+            *value = right[coordinate];
+        }
+        factorization.solve(free);
+        for (value, &coordinate) in free.iter().zip(&numbering.coordinate) {
+            solution[coordinate] = *value;
+        }
+    }
+
+    /// Makes of `S^-1 b` the solution of `(S + N) x = b`, with the symmetric and the skew half of the tangent. Returns
+    /// what is missing, relative to `S^-1 b`.
+    ///
+    /// The matrix of GMRES is `I + S^-1 N`: where S is positive definite its eigenvalues lie on a line through 1, so a few
+    /// products suffice.
+    pub(super) fn bring_in_skew(&mut self, x: &mut [f64]) -> f64 {
+        let at = std::mem::take(&mut self.tangent_at);
+        let mut skew = vec![0.0; x.len()];
+        let with_skew = |x: &[f64], y: &mut [f64]| {
+            skew.fill(0.0);
+            self.subtract_skew_times(&at, x, &mut skew);
+            self.solve_symmetric(&skew, y);
+            y.iter_mut().zip(x).for_each(|(y, x)| *y += x);
+        };
+        let missing = gmres(with_skew, x, SKEW_TOLERANCE, SKEW_PRODUCTS);
+        self.tangent_at = at;
+        missing
+    }
+
+    /// The vectors of [`Factorization::descents`](crate::linear::Factorization::descents) over all coordinates.
+    pub(super) fn descents(&mut self) -> Vec<Vec<f64>> {
+        let n = self.coordinates();
+        let all = |free: Vec<f64>| {
+            let mut z = vec![0.0; n];
+            self.numbering.coordinate.iter().zip(free).for_each(|(&coordinate, value)| z[coordinate] = value);
+            z
+        };
+        self.factorization.descents().into_iter().map(all).collect()
     }
 }

@@ -181,6 +181,16 @@ impl Factorization {
         self.solve_side_by_side(rhs);
     }
 
+    /// Directions in which the matrix is negative, one for each negative pivot: `z . A z = -1`, and `z . A y = 0` for any two.
+    ///
+    /// # Panics
+    ///
+    /// When the last [`factorize`](Self::factorize) did not succeed.
+    pub fn descents(&mut self) -> Vec<Vec<f64>> {
+        assert!(self.valid, "descents without a successful factorisation");
+        self.solution.descents(&self.tree, &self.factor)
+    }
+
     fn solve_side_by_side<const W: usize>(&mut self, rhs: &mut [[f64; W]]) {
         assert!(self.valid, "solve without a successful factorisation");
         assert_eq!(rhs.len(), self.pattern.n(), "one number for each column and right-hand side");

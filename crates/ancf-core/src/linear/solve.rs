@@ -27,25 +27,42 @@ struct Part<'a, const W: usize> {
 impl Solution {
     /// Replaces `W` interleaved right-hand sides, (n, W), by the solutions.
     pub fn solve<const W: usize>(&mut self, tree: &Tree, factor: &[f64], rhs: &mut [[f64; W]]) {
+        let parts = self.parts(tree);
+        let solver = Solver::<W> { arch: panel::arch::<W>(), tree, factor };
+        let (below, above) = parts.split_at_mut(tree.split());
+        solver.subtrees(below, |part| solver.forward(part, None, rhs));
+        solver.forward(Part { fronts: tree.top(), begin: tree.split(), parts: above }, Some(below), rhs);
+        solver.go_back(parts, rhs);
+    }
+
+    /// Vectors `z` with `z . A z = -1` and `z . A y = 0` for any two of them: one for each negative pivot.
+    pub fn descents(&mut self, tree: &Tree, factor: &[f64]) -> Vec<Vec<f64>> {
+        let parts = self.parts::<1>(tree);
+        let solver = Solver { arch: panel::arch::<1>(), tree, factor };
+        let mut descents = Vec::new();
+        for front in &tree.fronts {
+            for j in 0..front.columns.len() {
+                let pivot = solver.panel(front)[j * (front.rows() + 1)];
+                if pivot < 0.0 {
+                    // L^T z = e_j / sqrt|d_j|; the way back divides by d_j.
+                    parts.fill([0.0]);
+                    parts[front.vector + j] = [-(-pivot).sqrt()];
+                    let mut descent = vec![0.0; tree.order.len()];
+                    solver.go_back(parts, descent.as_chunks_mut().0);
+                    descents.push(descent);
+                }
+            }
+        }
+        descents
+    }
+
+    /// Working memory for `W` vectors.
+    fn parts<const W: usize>(&mut self, tree: &Tree) -> &mut [[f64; W]] {
         let size = tree.vector() * W;
         if self.parts.len() < size {
             self.parts.resize(size, 0.0);
         }
-        let parts = self.parts[..size].as_chunks_mut().0;
-        let solver = Solver::<W> { arch: panel::arch::<W>(), tree, factor };
-        let top = tree.top();
-        let split = tree.fronts.get(top.start).map_or(tree.vector(), |front| front.vector);
-        let (below, above) = parts.split_at_mut(split);
-        solver.subtrees(below, |part| solver.forward(part, None, rhs));
-        solver.forward(Part { fronts: top.clone(), begin: split, parts: above }, Some(below), rhs);
-        solver.backward(Part { fronts: top, begin: split, parts: above }, None);
-        let above = (split, &*above);
-        solver.subtrees(below, |part| solver.backward(part, Some(above)));
-        for front in &tree.fronts {
-            for (&column, value) in tree.order[front.columns.clone()].iter().zip(&parts[front.vector..]) {
-                rhs[column] = *value;
-            }
-        }
+        self.parts[..size].as_chunks_mut().0
     }
 }
 
@@ -56,6 +73,20 @@ struct Solver<'a, const W: usize> {
 }
 
 impl<'a, const W: usize> Solver<'a, W> {
+    /// Divides by D and solves with L^T, from the last front to the first.
+    fn go_back(&self, parts: &mut [[f64; W]], solution: &mut [[f64; W]]) {
+        let tree = self.tree;
+        let (below, above) = parts.split_at_mut(tree.split());
+        self.backward(Part { fronts: tree.top(), begin: tree.split(), parts: above }, None);
+        let above = (tree.split(), &*above);
+        self.subtrees(below, |part| self.backward(part, Some(above)));
+        for front in &tree.fronts {
+            for (&column, value) in tree.order[front.columns.clone()].iter().zip(&parts[front.vector..]) {
+                solution[column] = *value;
+            }
+        }
+    }
+
     /// Calls a function for each subtree.
     fn subtrees(&self, parts: &mut [[f64; W]], work: impl Fn(Part<'_, W>) + Send + Sync) {
         let tree = self.tree;

@@ -126,6 +126,11 @@ impl Tree {
         *self.subtrees.last().expect("an end")..self.fronts.len()
     }
 
+    /// Where the parts of a vector of these fronts begin.
+    pub fn split(&self) -> usize {
+        self.fronts.get(self.top().start).map_or(self.vector(), |front| front.vector)
+    }
+
     /// Finds the rows of each front, where they are in its parent, and where the entries of the matrix are.
     fn place(&mut self, pattern: &Pattern) {
         let n = pattern.n();

@@ -308,10 +308,10 @@ impl Newton {
     }
 }
 
-/// Factorises the tangent of an iteration and returns its number of negative pivots.
+/// Factorises the tangent of an iteration and returns its number of negative pivots, those that count.
 fn factorize(system: &mut System, iteration: usize) -> Result<usize, Failure> {
     match system.factorize() {
-        Ok(inertia) => Ok(inertia.negative),
+        Ok(inertia) => Ok(system.instabilities(inertia)),
         Err(error) => Err(Failure::from_linear(error, iteration, |row| system.describe(row))),
     }
 }

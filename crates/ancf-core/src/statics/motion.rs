@@ -77,7 +77,7 @@ pub(super) fn settle(
     let mut mass = scale * (newton.distance(&vec![0.0; q.len()], shape) / LONGEST).max(1.0);
     let mut longer = LONGER[0];
     let mut last = f64::INFINITY;
-    let (mut end, mut cause) = (None, None);
+    let (mut end, mut cause, mut stuck) = (None, None, false);
     while newton.iterations() < most {
         let mut next = q.clone();
         let problem = Problem { t, mass, stiffness: 1.0, origin: &q, ..Problem::default() };
@@ -112,9 +112,13 @@ pub(super) fn settle(
         }
         let calm = mass < LIGHTEST * scale || quick && moved < CALMER * last;
         last = moved;
-        let stuck = moved < STUCK;
+        stuck = moved < STUCK;
         if moved < AT_REST && calm || stuck {
-            end = rest(path, t, &q, observer)?;
+            match rest(path, t, &q, observer) {
+                Ok(point) => end = Some(point),
+                Err(failure @ (Failure::Stopped | Failure::TooLarge)) => return Err(failure),
+                Err(failure) => cause = Some(failure),
+            }
             if end.is_some() || stuck {
                 break;
             }
@@ -125,22 +129,23 @@ pub(super) fn settle(
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
     end.ok_or_else(|| match cause {
-        // No step has succeeded.
-        Some(failure) if last == f64::INFINITY => failure,
+        // No step has succeeded, or the motion rests where there is no stable equilibrium.
+        Some(failure) if stuck || last == f64::INFINITY => failure,
         _ => Failure::NotSettled { iterations: newton.iterations(), moved: last },
     })
 }
 
-/// The stable equilibrium close to `q`, if there is one.
-fn rest(path: &mut Path<'_>, t: f64, q: &[f64], observer: &dyn Observer) -> Result<Option<Point>, Failure> {
+/// The stable equilibrium close to `q`.
+fn rest(path: &mut Path<'_>, t: f64, q: &[f64], observer: &dyn Observer) -> Result<Point, Failure> {
     let problem = Problem { t, stiffness: 1.0, ..Problem::default() };
     let mut end = q.to_vec();
-    match path.newton.solve(path.system, &problem, &mut end, None, observer) {
-        Err(failure @ (Failure::Stopped | Failure::TooLarge)) => Err(failure),
-        Ok(report) if report.negative_pivots == 0 && path.newton.distance(q, &end) < AT_REST => {
-            let load = Load { t, held: 0.0 };
-            Ok(Some(Point { load, q: end, energy: report.energy, negative_pivots: 0 }))
-        }
-        _ => Ok(None),
+    let report = path.newton.solve(path.system, &problem, &mut end, None, observer)?;
+    let moved = path.newton.distance(q, &end);
+    if moved >= AT_REST {
+        return Err(Failure::NotSettled { iterations: report.iterations, moved });
     }
+    if report.negative_pivots > 0 {
+        return Err(Failure::Unstable { negative: report.negative_pivots });
+    }
+    Ok(Point { load: Load { t, held: 0.0 }, q: end, energy: report.energy, negative_pivots: 0 })
 }

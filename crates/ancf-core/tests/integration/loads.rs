@@ -4,7 +4,7 @@
 //! Goal: the same work on any mesh, with and without supports; forces and stiffness of followers by differences.
 //! Mesh: 1 x 1 to 4 x 3 elements.
 
-use nalgebra::{DVector, Vector3};
+use nalgebra::{DMatrix, DVector, Vector3};
 
 use ancf_core::assembly::System;
 use ancf_core::element::{Kind, Membrane, NodalVector};
@@ -247,6 +247,21 @@ fn constant_moments_hold_a_cylinder() {
     }
 }
 
+/// Derivatives of the loads with respect to the free coordinates.
+fn load_stiffness(system: &System, q: &[f64], t: f64) -> DMatrix<f64> {
+    let free = system.free();
+    let columns = free.iter().map(|&j| {
+        let force = |step: f64| {
+            let (mut at, mut force) = (q.to_vec(), vec![0.0; q.len()]);
+            at[j] += step;
+            system.external_force(&at, t, &mut force);
+            free.iter().map(|&i| force[i]).collect()
+        };
+        DVector::from_vec(derivative(1e-3, force))
+    });
+    DMatrix::from_columns(&columns.collect::<Vec<_>>())
+}
+
 /// What a follower adds to the tangent is the symmetric part of its derivative.
 #[test]
 fn followers_add_the_symmetric_part_of_their_derivative() {
@@ -266,19 +281,37 @@ fn followers_add_the_symmetric_part_of_their_derivative() {
         // A negative load factor, to see that it is used.
         let t = -0.5;
         let added = tangent(&mut system, &q, t) - tangent(&mut system, &q, 0.0);
-        let free = system.free().to_vec();
-        let mut derivatives = added.clone();
-        for (column, &j) in free.iter().enumerate() {
-            let force = |step: f64| {
-                let (mut at, mut force) = (q.clone(), vec![0.0; q.len()]);
-                at[j] += step;
-                system.external_force(&at, t, &mut force);
-                free.iter().map(|&i| force[i]).collect()
-            };
-            derivatives.column_mut(column).copy_from_slice(&derivative(1e-3, force));
-        }
+        let derivatives = load_stiffness(&system, &q, t);
         let expected = -0.5 * (&derivatives + derivatives.transpose());
         let error = (&added - &expected).amax() / expected.amax();
         assert!(error < 1e-8, "{element:?}, {edge}: {error:e}");
     }
+}
+
+/// Under a pressure the symmetric half of the tangent of a plate with free edges has negative pivots where the whole tangent
+/// still has a positive determinant: the plate is stable there, and is told to be.
+#[test]
+fn stability_is_that_of_the_whole_tangent() {
+    let (mut model, body) = soft([2, 2]);
+    model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
+    add_ramp(&mut model, LoadKind::Pressure { body, pressure: 1e-6 });
+    let mut system = system(model);
+    let (mut held, mut left) = (0, 0);
+    for seed in 0..20 {
+        let q = random_state(system.model(), 1e-4, &mut Random(seed));
+        for t in [0.03, 0.1, 0.3, 1.0, 3.0] {
+            let symmetric = tangent(&mut system, &q, t);
+            let inertia = system.factorize().unwrap();
+            let derivatives = load_stiffness(&system, &q, t);
+            let whole = symmetric - 0.5 * (&derivatives - derivatives.transpose());
+            let count = system.instabilities(inertia);
+            let negative = whole.complex_eigenvalues().iter().filter(|value| value.re < 0.0).count();
+            // Each zero of the determinant changes both by one.
+            let same = count % 2 == negative % 2 && (count == 0) == (negative == 0);
+            assert!(same, "{seed}, {t}: {count} of {} pivots, {negative} eigenvalues", inertia.negative);
+            held += usize::from(inertia.negative > 0 && count == 0);
+            left += usize::from(count > 0);
+        }
+    }
+    assert!(held > 5 && left > 5, "{held}, {left}");
 }

@@ -62,6 +62,19 @@ fn inertia_counts_the_negative_eigenvalues_of_indefinite_matrices() {
 }
 
 #[test]
+fn a_matrix_is_negative_in_its_descents() {
+    for seed in 0..5 {
+        let matrix = random_matrix(60, seed);
+        let (mut factorization, inertia) = factorized(&matrix);
+        let descents: Vec<f64> = factorization.descents().concat();
+        let z = DMatrix::from_vec(60, inertia.negative, descents);
+        let product = z.transpose() * dense(&matrix) * z;
+        let error = (product + DMatrix::identity(inertia.negative, inertia.negative)).amax();
+        assert!(error < 1e-8, "{error:e}");
+    }
+}
+
+#[test]
 fn singular_matrices_are_refused_where_they_fail() {
     // springs in a ring without a support: the last pivot vanishes, up to rounding
     let n = 50;
