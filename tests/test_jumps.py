@@ -209,3 +209,25 @@ def test_a_pressure_at_free_edges_snaps_a_shell_where_its_whole_tangent_is_lost(
         assert np.linalg.eigvals(tangent).real.min() > 0
         if state == before:
             assert np.linalg.eigvalsh(tangent + tangent.T)[0] < 0
+
+
+def test_arc_length_tells_where_a_cap_under_pressure_is_lost() -> None:
+    """Where it jumps under a growing load. Bifurcations of the unstable path beyond do not shorten steps."""
+    cap = ancf.Sphere(
+        radius=10.0,
+        longitude=(-0.2, 0.2),
+        latitude=(-0.2, 0.2),
+        divisions=(4, 4),
+        thickness=0.1,
+        material=ancf.Material(E=2e7, nu=0.3),
+    )
+    model = ancf.Model(
+        bodies={"cap": cap},
+        supports=[ancf.Support(at=f"edge:{side}", fix=["r"]) for side in ALL],
+        loads=[ancf.Pressure(pressure=-2420.0)],
+    )
+    result = ancf.solve_static(model, path="arc")
+    unstable = int(np.argmax(result.negative_pivots > 0))
+    np.testing.assert_allclose(result.t[unstable - 1], ancf.solve_static(model).jumps[0], rtol=0.015)
+    assert result.status == "ok"
+    assert result.counts["steps"] < 25

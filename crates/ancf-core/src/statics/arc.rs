@@ -1,7 +1,6 @@
 //! Arc length: a path whose load factor is found, through limit points and turning points.
 //!
-//! Each step predicts along the tangent and solves in the plane normal to it. Lengths are root mean squares of the
-//! coordinates' changes relative to the size of the model; the load factor has no part in them.
+//! Each step predicts along the tangent and solves in the plane normal to it, in the metric of displacements.
 
 use crate::nonlinear::{Failure, Problem};
 use crate::observe::Observer;
@@ -9,6 +8,7 @@ use crate::quadrature::Rule;
 
 use super::Options;
 use super::load::{GROWN, ITERATIONS};
+use super::metric::Metric;
 use super::path::{Load, Path, Point, difference, hermite};
 
 /// Largest distance of a solution from its prediction, relative to the step, and the one to aim at: beyond, Newton's method
@@ -198,31 +198,6 @@ impl Tangent {
     fn new(mut rate: Vec<f64>, t: f64) -> Self {
         rate.iter_mut().for_each(|v| *v *= t);
         Self { q: rate, t }
-    }
-}
-
-/// Lengths of changes of the coordinates.
-pub(super) struct Metric {
-    weights: Vec<f64>,
-}
-
-impl Metric {
-    pub fn new(path: &Path<'_>) -> Self {
-        let free = path.system.free().len() as f64;
-        Self { weights: path.newton.scale().iter().map(|s| 1.0 / (free * s * s)).collect() }
-    }
-
-    pub fn product(&self, a: &[f64], b: &[f64]) -> f64 {
-        a.iter().zip(b).zip(&self.weights).map(|((a, b), w)| w * a * b).sum()
-    }
-
-    pub fn length(&self, a: &[f64]) -> f64 {
-        self.product(a, a).sqrt()
-    }
-
-    /// The vector whose product with another one is theirs in this metric.
-    pub fn weighted(&self, a: &[f64]) -> Vec<f64> {
-        a.iter().zip(&self.weights).map(|(a, w)| w * a).collect()
     }
 }
 

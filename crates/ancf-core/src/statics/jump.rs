@@ -8,7 +8,8 @@ use crate::nonlinear::Failure;
 use crate::observe::Observer;
 
 use super::Options;
-use super::arc::{Metric, Walk};
+use super::arc::Walk;
+use super::metric::Metric;
 use super::motion::{Start, settle};
 use super::path::{Load, Path, Point, difference, product};
 
@@ -63,7 +64,7 @@ fn lead_on(
                 let mut shape = vec![0.0; q.len()];
                 path.system.solve(&change, &mut shape);
                 let stiffness = product(&change, &shape);
-                return jump(path, Start { t, q, shape: &shape, stiffness }, observer);
+                return jump(path, stable, Start { t, q, shape: &shape, stiffness }, observer);
             }
         }
         let back = (farthest - path.at.load.t) * direction;
@@ -75,7 +76,7 @@ fn lead_on(
             let q = disturbed(path, &difference(&path.at.q, &stable.0.q));
             let shape = difference(&path.at.q, path.system.model().reference());
             let (t, stiffness) = (onwards(farthest, BEYOND * first), 2.0 * path.at.energy);
-            return jump(path, Start { t, q, shape: &shape, stiffness }, observer);
+            return jump(path, stable, Start { t, q, shape: &shape, stiffness }, observer);
         }
         observer.reached(path.at.load.t);
         if path.at.load.t == target {
@@ -86,12 +87,18 @@ fn lead_on(
     Ok(())
 }
 
-/// Moves from a state close to the last point to a stable equilibrium.
-fn jump(path: &mut Path<'_>, start: Start<'_>, observer: &mut dyn Observer) -> Result<(), Failure> {
+/// Moves from a state close to the last point to a stable equilibrium. The load does its work from the last stable one on:
+/// the structure does not go the way on which arc length has led.
+fn jump(
+    path: &mut Path<'_>,
+    (stable, work): &(Point, f64),
+    start: Start<'_>,
+    observer: &mut dyn Observer,
+) -> Result<(), Failure> {
     let t = start.t;
     let end = settle(path, start, MOST_MOTION, observer)?;
-    let straight = difference(&end.q, &path.at.q);
-    path.work += path.system.work(t, [&path.at.q, &end.q], [&straight, &straight]);
+    let straight = difference(&end.q, &stable.q);
+    path.work = work + path.system.work(t, [&stable.q, &end.q], [&straight, &straight]);
     path.at = end;
     path.jumps.push(t);
     Ok(())

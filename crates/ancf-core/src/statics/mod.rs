@@ -3,6 +3,7 @@
 mod arc;
 mod jump;
 mod load;
+mod metric;
 mod motion;
 mod path;
 
