@@ -231,3 +231,25 @@ def test_arc_length_tells_where_a_cap_under_pressure_is_lost() -> None:
     np.testing.assert_allclose(result.t[unstable - 1], ancf.solve_static(model).jumps[0], rtol=0.015)
     assert result.status == "ok"
     assert result.counts["steps"] < 25
+
+
+def test_a_deep_arch_snaps_at_its_published_load() -> None:
+    """Hinged at one end, clamped at the other, 215 degrees: P R^2 / EI = 8.97, DaDeppo and Schmidt (1975)."""
+    half = np.deg2rad(107.5)
+    arch = ancf.Cylinder(
+        radius=100.0,
+        angle=(np.pi / 2 - half, np.pi / 2 + half),
+        length=(0.0, 1.0),
+        divisions=(48, 1),
+        thickness=1.0,
+        material=ancf.Material(E=12e6, nu=0.0),
+    )
+    planes = [ancf.Support(at=f"edge:{side}", symmetry="z") for side in ("y0", "y1")]
+    model = ancf.Model(
+        bodies={"arch": arch},
+        supports=[ancf.Support(at="edge:x0", clamp=True), ancf.Support(at="edge:x1", fix=["r"]), *planes],
+        loads=[ancf.Force(at=(np.pi / 2, 0.5), force=(0.0, -1000.0, 0.0))],
+    )
+    result = ancf.solve_static(model)
+    np.testing.assert_allclose(10 * result.jumps, [8.97], rtol=5e-3)
+    assert result.counts["steps"] < 12

@@ -233,10 +233,17 @@ impl Way<'_> {
             .sum()
     }
 
-    /// Where the load factor turns back.
+    /// Where the load factor turns back: first, but for the ends, which are limit points as they are.
     fn limit(&self) -> Option<f64> {
-        let slope = |u| hermite(u, self.from.load.t, self.t, self.chord * self.start.t, self.chord * self.end.t).1;
-        (slope(0.0) * slope(1.0) < 0.0).then(|| bisect(slope))
+        let [start, end] = [self.start.t, self.end.t].map(|t| self.chord * t);
+        let rise = self.t - self.from.load.t;
+        // The slope is start + 2 c u + 3 d u^2.
+        let (c, d) = (3.0 * rise - 2.0 * start - end, start + end - 2.0 * rise);
+        let root = (c * c - 3.0 * d * start).sqrt();
+        let sum = -(c + root.copysign(c));
+        let roots = [start / sum, sum / (3.0 * d)].into_iter().filter(|u| (0.0..1.0).contains(u));
+        let amid = |u: &f64| (LIMIT..1.0 - LIMIT).contains(u);
+        roots.min_by(|a, b| (!amid(a), a).partial_cmp(&(!amid(b), b)).expect("numbers"))
     }
 
     /// Where the load factor has a value that lies between those of the ends.
