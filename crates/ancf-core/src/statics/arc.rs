@@ -13,7 +13,7 @@ use super::path::{Load, Path, Point, difference, hermite};
 
 /// Largest distance of a solution from its prediction, relative to the step, and the one to aim at: beyond, Newton's method
 /// rarely converges.
-const TURN: [f64; 2] = [1.0, 0.55];
+const TURN: [f64; 2] = [0.7, 0.4];
 /// Largest difference between the gain of strain energy and the work on the cubic way, relative to the latter.
 const MISMATCH: f64 = 0.03;
 /// Length of a step after one along which the slope of the load falls to a share, relative to its length and that share, and
