@@ -11,7 +11,7 @@ import numpy as np
 
 from ancf.plan.climb import Climb
 from ancf.plan.errors import distance, scales
-from ancf.plan.ladder import Choice, Family, Rung
+from ancf.plan.ladder import Choice, Family, Rung, Stepping
 from ancf.plan.learn import COMPARED, compare, learn
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
@@ -165,29 +165,44 @@ class Ascent:
         return pilot
 
     def _compare_steps(self, climb: Climb) -> None:
-        """Before a rung is run with another stepping than the last one, see that the two agree there, or shorten it.
+        """Before the next rung is run, see that all steppings that were run on the last one agree there, or shorten one.
 
         Steps that are short enough on the coarse mesh, on which they were found, may not be on a finer one, and then
-        the error in time would be taken for one in space.
+        the error in time would be taken for one in space, or be common to all finer meshes and not be seen at all.
         """
-        last = climb.rung
+        search, last = self.search, climb.rung
         for _ in range(_SHORTER):
-            stepping = self.search.stepping(climb.next)
+            stepping = search.stepping(climb.next)
             if last is None or stepping is None:
                 return
-            known = [
-                self.search.pilots.known(Choice(last, other)) for other in self.search.allowed if other != stepping
-            ]
-            others = [pilot.values for pilot in known if pilot is not None]
+            kinds: dict[object, Stepping] = {}
+            for other in search.allowed:
+                # The shortest of each kind comes first.
+                kinds.setdefault(other.kind, other)
+            kinds.pop(stepping.kind)
+            known = [search.pilots.known(Choice(last, other)) for other in kinds.values()]
+            others = [pilot for pilot in known if pilot is not None]
             if not others:
                 return
-            own = self.search.pilots.run(Choice(last, stepping), _AFFORDED * self.search.pilots.left)
+            own = search.pilots.run(Choice(last, stepping), _AFFORDED * search.pilots.left)
             if not own.ok:
                 return
             scale = scales(own.values)
-            if min(distance(own.values, values, scale) for values in others) <= 2 * SHARE * self.search.tol:
+            other = max(others, key=lambda pilot: distance(own.values, pilot.values, scale))
+            if distance(own.values, other.values, scale) <= 2 * SHARE * search.tol:
                 return
-            self.search.shorten(stepping, stepping.tighter())
+            self._shorten_one(own, other)
+
+    def _shorten_one(self, *pilots: Pilot) -> None:
+        """Of two steppings that disagree on a rung shorten the one that changes more with shorter steps."""
+        changes = {}
+        for pilot in pilots:
+            stepping = pilot.choice.stepping
+            assert stepping is not None
+            tight = self.search.pilots.run(replace(pilot.choice, stepping=stepping.tighter()))
+            changes[stepping] = distance(tight.values, pilot.values, scales(pilot.values)) if tight.ok else 0.0
+        worse = max(changes, key=changes.__getitem__)
+        self.search.shorten(worse, worse.tighter())
 
     def _reconsider(self, climb: Climb) -> None:
         """Go on with another family of the element where it is much nearer to what another element tells.
