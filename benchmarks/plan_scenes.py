@@ -223,10 +223,10 @@ def later_motions() -> Iterator[Case]:
     push = ancf.LineLoad(at="edge:y1", per_length=(1e4, 0.0, 0.0), history=[(0.0, 0.0), (3e-3, 1.0)])
     yield Case(
         scene("pipe pushed", pipe, [foot], [push], (0.75, 0.3), ancf.Dynamic(until=4e-3, step=2e-5)),
-        ((8, 28), (10, 40)),
+        ((24, 40), (32, 56)),
         x,
         (1, 2, 4, 8),
-        Stepping("verlet", rtol=1e-4),
+        Stepping("esdirk", step=4e-3 / 48),
     )
     bar = plate((0.4, 0.05), 0.04, STEEL)
     spin = ancf.Force(at=(0.0, 0.05), force=(0.0, 80.0, 5.0))

@@ -20,6 +20,8 @@ _LEFT = 0.5
 """Part of what tighter steps change that is left when it is taken out: a third at the second order."""
 _TIGHTENED = 4
 """Times that steps are tightened until that changes little."""
+_ALIKE = 2.0
+"""Times an estimate that is above the tolerance up to which another one says the same."""
 _ROUNDING = 1e-13
 """Relative differences below it are none."""
 _OTHER = np.log(4.0)
@@ -93,8 +95,14 @@ class Search:
 
     @property
     def lead(self) -> Climb:
-        """The climb with the smallest error."""
-        return min((climb for climb in self.climbs if climb.rung is not None), key=lambda climb: climb.own)
+        """The climb with the smallest error; where none is small, the one with the finest mesh unless it tells more.
+
+        Estimates that are far from their end say little of which is the better one.
+        """
+        known = [climb for climb in self.climbs if climb.rung is not None]
+        least = min(known, key=lambda climb: climb.own)
+        finest = max(known, key=lambda climb: climb.rung.elements if climb.rung else 0)
+        return finest if least.own > self.tol and finest.own <= _ALIKE * least.own else least
 
     @property
     def best(self) -> Rung:
