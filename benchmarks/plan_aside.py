@@ -39,7 +39,7 @@ def aside_statics() -> Iterator[Case]:
         radius=0.6, longitude=(0.0, 0.7), latitude=(0.2, 0.8), divisions=(4, 4), thickness=8e-3, material=STEEL
     )
     hang = [line("x1", 0.0, 4e3, 2e4)]
-    yield Case(scene("patch pulled", patch, [WALL], hang, (0.35, 0.8), run, "displacement"), ((24, 24), (40, 40)))
+    yield Case(scene("patch pulled", patch, [WALL], hang, (0.35, 0.8), run, "displacement"), ((96, 24), (128, 32)))
 
 
 def aside_motions() -> Iterator[Case]:

@@ -12,7 +12,7 @@ import numpy as np
 from ancf.plan.climb import Climb
 from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import Choice, Family, Rung, Stepping
-from ancf.plan.learn import COMPARED, compare, learn
+from ancf.plan.learn import COMPARED, learn, separate
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
 from ancf.plan.timing import SHARE
@@ -87,7 +87,7 @@ class Ascent:
         if reached and not going:
             # The error of each may turn out to be larger, so that the other leads.
             for _ in search.climbs:
-                compare(search, search.lead)
+                separate(search, search.lead)
         return reached
 
     def _promising(self, going: Sequence[Climb]) -> Climb:
@@ -128,7 +128,9 @@ class Ascent:
         spent = search.pilots.spent
         part = _CLEAR if cost <= _LITTLE * spent else BEST if cost <= _MUCH * spent else _COARSE
         small = lead.refined and lead.own <= part * search.tol and (lead.ended or not lead.sudden)
-        return small and self._confirmed(search.best, part)
+        if small:
+            separate(search, lead)
+        return small and lead.own <= part * search.tol and self._confirmed(search.best, part)
 
     def _step(self, climb: Climb) -> None:
         """Run the next rung of a climb and learn from it, or end the climb."""

@@ -23,6 +23,8 @@ class Climb:
         What is run next.
     rung : Rung or None
         The finest that reached its end; None before the first.
+    last : Rung or None
+        The one before it.
     exact : list of ndarray
         The wanted quantities of `rung`, extrapolated where rates are known.
     own : float
@@ -41,6 +43,7 @@ class Climb:
 
     next: Rung
     rung: Rung | None = None
+    last: Rung | None = None
     exact: Values = field(default_factory=list)
     own: float = np.inf
     sides: dict[tuple[int, int], Side] = field(default_factory=dict)
@@ -51,7 +54,7 @@ class Climb:
 
     def restart(self, rung: Rung) -> None:
         """Begin anew with a rung of another family."""
-        self.next, self.rung = rung, None
+        self.next, self.rung, self.last = rung, None, None
         self.exact, self.own, self.sides, self.refined = [], np.inf, {}, False
         self.rate, self.stalled = UNKNOWN_RATE, 0
 

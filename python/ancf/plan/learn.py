@@ -14,6 +14,8 @@ from ancf.plan.search import Search
 
 COMPARED = 32
 """Elements up to which a rung is compared with neighbours that are coarser along one side."""
+_PAIR, _CANCELLED = 2, 1.5
+"""Sides whose changes are told apart, and times what they change together from which on they have cancelled."""
 _TRUST = 0.5
 """Part of the error that remains when it is extrapolated, or when another element comes to the same."""
 
@@ -54,7 +56,7 @@ def learn(search: Search, climb: Climb) -> None:
         for side in refined:
             part = total * expected.get(side, 0.0) / share if share else total
             climb.sides[side] = Side(part, before[side].rate_to(part) if side in before else None)
-    climb.rung, climb.exact, climb.refined = rung, values, last is not None
+    climb.rung, climb.last, climb.exact, climb.refined = rung, last, values, last is not None
     # Nothing is known of a side along which no coarser rung reached its end.
     known = all(side in climb.sides for side in rung.sides())
     climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
@@ -63,23 +65,28 @@ def learn(search: Search, climb: Climb) -> None:
         _agree(search, climb, scale)
 
 
-def compare(search: Search, climb: Climb) -> None:
-    """Compare the finest rung of a climb that ended too early with its neighbours that are coarser along one side.
+def separate(search: Search, climb: Climb) -> None:
+    """Tell what two sides of a large mesh that were refined at once have changed: it may have cancelled.
 
-    Where both sides were refined at once what they change may have cancelled.
+    The rung between, which is finer along one of them only, tells it.
     """
-    rung = climb.rung
-    values = None if rung is None else search.values(rung)
-    if rung is None or values is None:
+    rung, last = climb.rung, climb.last
+    if rung is None or last is None or rung.elements <= COMPARED:
+        return
+    refined = [side for side in rung.sides() if _count(rung, side) > _count(last, side)]
+    between = rung.scaled(refined[0], Fraction(1, 2)) if len(refined) == _PAIR else None
+    values, coarse = search.values(rung), search.values(last)
+    if between is None or values is None or coarse is None:
+        return
+    pilot = search.run(between, search.pilots.left / 2)
+    if not pilot.ok:
         return
     scale = scales(values)
-    for side in rung.sides():
-        half = rung.scaled(side, Fraction(1, 2))
-        pilot = None if half is None else search.run(half, search.pilots.left / 2)
-        if pilot is not None and pilot.ok:
-            old = climb.sides.get(side)
-            climb.sides[side] = Side(distance(values, pilot.values, scale), old.rate if old else None)
-    climb.own = max(climb.own, sum(side.error for side in climb.sides.values()))
+    parts = distance(values, pilot.values, scale), distance(pilot.values, coarse, scale)
+    if sum(parts) > _CANCELLED * distance(values, coarse, scale):
+        climb.sides.update({side: Side(part, None) for side, part in zip(refined, parts, strict=True)})
+        climb.own = max(climb.own, sum(side.error for side in climb.sides.values()))
+        climb.exact = values
 
 
 def _extrapolate(
