@@ -66,7 +66,9 @@ def aside_motions() -> Iterator[Case]:
         Stepping("esdirk", step=0.25 / 250),
     )
     reed = plate((0.2, 0.03), 1e-3, STEEL)
-    shake = ancf.Support(at="edge:x0", clamp=True, shake=ancf.supports.Shake(amplitude=(0.0, 0.0, 2e-3), frequency=12.0))
+    shake = ancf.Support(
+        at="edge:x0", clamp=True, shake=ancf.supports.Shake(amplitude=(0.0, 0.0, 2e-3), frequency=12.0)
+    )
     yield Case(
         scene("reed shaken", reed, [shake], [], (0.2, 0.015), ancf.Dynamic(until=0.15, step=5e-4), "displacement"),
         ((20, 4), (32, 6)),
@@ -78,7 +80,9 @@ def aside_motions() -> Iterator[Case]:
     pins = [ancf.Support(at=f"corner:{corner}", fix=["r"]) for corner in ("x0y0", "x0y1")]
     gust = ancf.Pressure(pressure=3.0, history=[(0.0, 0.0), (0.02, 1.0), (0.05, 0.0)])
     yield Case(
-        scene("page puffed", puff, pins, [gust, WEIGHT], (0.3, 0.2), ancf.Dynamic(until=0.05, step=5e-4), "displacement"),
+        scene(
+            "page puffed", puff, pins, [gust, WEIGHT], (0.3, 0.2), ancf.Dynamic(until=0.05, step=5e-4), "displacement"
+        ),
         ((12, 8), (16, 12)),
         _X,
         _Y,

@@ -30,7 +30,9 @@ def first_statics() -> Iterator[Case]:
     )
     hinges = [HINGE, ancf.Support(at="edge:x1", fix=["r"])]
     weight = ancf.Force(at=(1.57, 0.254), force=(0.0, -6e4, 0.0))
-    yield Case(scene("vault loaded", vault, hinges, [weight], (1.57, 0.254), run, "displacement"), ((64, 128), (80, 128)))
+    yield Case(
+        scene("vault loaded", vault, hinges, [weight], (1.57, 0.254), run, "displacement"), ((64, 128), (80, 128))
+    )
     tape = plate((0.4, 0.04), 2e-3, RUBBER)
     yield Case(
         scene("tape bends", tape, [WALL], [line("x1", 0, 0, 0.1)], (0.13, 0.02), run, "curvature"),

@@ -167,7 +167,7 @@ class Ascent:
         return pilot
 
     def _compare_steps(self, climb: Climb) -> None:
-        """Before the next rung is run, see that all steppings that were run on the last one agree there, or shorten one.
+        """Before the next rung is run, see that all steppings that were run on the last one agree, or shorten one.
 
         Steps that are short enough on the coarse mesh, on which they were found, may not be on a finer one, and then
         the error in time would be taken for one in space, or be common to all finer meshes and not be seen at all.
@@ -178,22 +178,22 @@ class Ascent:
             if last is None or stepping is None:
                 return
             kinds: dict[object, Stepping] = {}
-            for other in search.allowed:
+            for known in search.allowed:
                 # The shortest of each kind comes first.
-                kinds.setdefault(other.kind, other)
+                kinds.setdefault(known.kind, known)
             kinds.pop(stepping.kind)
-            known = [search.pilots.known(Choice(last, other)) for other in kinds.values()]
-            others = [pilot for pilot in known if pilot is not None]
+            done = [search.pilots.known(Choice(last, other)) for other in kinds.values()]
+            others = [pilot for pilot in done if pilot is not None]
             if not others:
                 return
             own = search.pilots.run(Choice(last, stepping), _AFFORDED * search.pilots.left)
             if not own.ok:
                 return
             scale = scales(own.values)
-            other = max(others, key=lambda pilot: distance(own.values, pilot.values, scale))
-            if distance(own.values, other.values, scale) <= 2 * SHARE * search.tol:
+            farthest = max(others, key=lambda pilot: distance(own.values, pilot.values, scale))
+            if distance(own.values, farthest.values, scale) <= 2 * SHARE * search.tol:
                 return
-            self._shorten_one(own, other)
+            self._shorten_one(own, farthest)
 
     def _shorten_one(self, *pilots: Pilot) -> None:
         """Of two steppings that disagree on a rung shorten the one that changes more with shorter steps."""

@@ -139,9 +139,9 @@ class Search:
             # The limit of stability may set the steps of both: then tighter control tells nothing.
             if change > _ROUNDING:
                 self.in_time = _LEFT * change
-            if change <= 2 * SHARE * self.tol:
+            if change <= SHARE * self.tol:
                 return
-            if last.choice.stepping in self.allowed:
+            if change > 2 * SHARE * self.tol and last.choice.stepping in self.allowed:
                 self.shorten(last.choice.stepping, stepping)
             last = tight
 
