@@ -150,7 +150,7 @@ def test_differences_that_vanish_suddenly_are_not_believed() -> None:
     assert Ascent(search).up([THIN[0], CONTINUOUS])
     assert abs(search.exact[0][1, 0] - 1.0) < 0.05
     assert Side(1e-4, np.log2(0.25 / 1e-4)).sudden
-    assert not Side(1e-4, 4.0).sudden
+    assert not Side(1e-4, 5.0).sudden
     assert not Side(0.01, 0.5).steady
     # 0.25, by accident 1e-4, then 0.25 / 16: the second order over two refinements.
     assert Side(1e-4, np.log2(0.25 / 1e-4)).rate_to(0.25 / 16) == pytest.approx(2.0)

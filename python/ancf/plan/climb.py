@@ -33,6 +33,8 @@ class Climb:
         Differences and rates along body and axis.
     refined : bool
         Whether `rung` is finer than one before it: a single difference may be small by accident.
+    apart : bool
+        Whether what two sides changed has cancelled, so that it is told apart.
     rate : float
         With which `own` shrank when it was refined last, as a power of 2, in the range that is trusted.
     stalled : int
@@ -48,6 +50,7 @@ class Climb:
     own: float = np.inf
     sides: dict[tuple[int, int], Side] = field(default_factory=dict)
     refined: bool = False
+    apart: bool = False
     rate: float = UNKNOWN_RATE
     stalled: int = 0
     ended: bool = False

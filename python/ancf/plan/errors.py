@@ -14,8 +14,8 @@ Values = Sequence[FloatArray]
 RATES = (0.5, 2.0)
 """Rates of convergence are taken to lie here: a lower one is no convergence, a higher one may be an accident."""
 UNKNOWN_RATE = 1.0
-_SLOWEST, _FASTEST, _SUDDEN = 1.0, 3.0, 4.0
-"""Rates of steady convergence, and the order of cubic polynomials, beyond which differences are small by accident."""
+_SLOWEST, _FASTEST, _SUDDEN = 1.0, 3.0, 5.0
+"""Rates of steady convergence, and the one beyond which differences are small by accident."""
 SAFETY = 1.2
 
 
