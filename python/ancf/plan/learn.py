@@ -61,7 +61,8 @@ def learn(search: Search, climb: Climb) -> None:
     climb.rung, climb.last, climb.exact, climb.refined = rung, last, values, last is not None
     # Nothing is known of a side along which no coarser rung reached its end.
     known = all(side in climb.sides for side in rung.sides())
-    climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
+    together = max if climb.apart else sum
+    climb.own = together(side.error for side in climb.sides.values()) if known else np.inf
     if last is not None and refined and all(climb.sides[side].steady for side in refined if side in climb.sides):
         _extrapolate(search, climb, last, scale, refined)
         _agree(search, climb, scale)
@@ -77,8 +78,9 @@ def separate(search: Search, climb: Climb) -> None:
     if not parts or values is None or coarse is None:
         return
     if sum(parts.values()) > _CANCELLED * distance(values, coarse, scales(values)):
-        climb.sides.update({side: Side(part, climb.sides[side].rate) for side, part in parts.items()})
-        climb.own = max(climb.own, sum(side.error for side in climb.sides.values()))
+        climb.sides.update({side: Side(part, None) for side, part in parts.items()})
+        # Of opposite signs, the larger one bounds both together.
+        climb.own = max(climb.own, *(side.error for side in climb.sides.values()))
         climb.exact, climb.apart = values, True
 
 
