@@ -37,7 +37,8 @@ from ancf.modal import ModalResult, modes
 from ancf.model import Model
 from ancf.plan import Plan, plan
 from ancf.probes import Probe
-from ancf.result import Energy, Record, Result
+from ancf.records import Energy, Reaction, Record
+from ancf.result import Result
 from ancf.run import CheckpointWarning, Dynamic, Modes, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import simulate, solve_static
@@ -65,6 +66,7 @@ __all__ = [
     "Plan",
     "Pressure",
     "Probe",
+    "Reaction",
     "Record",
     "Rectangle",
     "Result",

@@ -17,6 +17,7 @@ import numpy as np
 
 from ancf.errors import InputError, Mistake
 from ancf.modal import ModalResult
+from ancf.records import Reaction
 from ancf.result import Result
 from ancf.run import Static
 
@@ -170,10 +171,16 @@ def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
         return summary | {"modes": {"frequency": _plain(result.frequency)}}
     energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
     probes = {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()}
-    summary |= {"probes": probes, "energy": _plain(energy)}
+    reactions = [_reaction(reaction) for reaction in result.reactions]
+    summary |= {"probes": probes, "reactions": reactions, "energy": _plain(energy)}
     if isinstance(result.run, Static):
         summary["jumps"] = _plain(result.jumps)
     return summary
+
+
+def _reaction(reaction: Reaction) -> dict[str, Any]:
+    arrays = {name: _plain(getattr(reaction, name)) for name in ("t", "point", "force", "moment")}
+    return {"body": reaction.support.body, "at": _plain(reaction.support.at), **arrays}
 
 
 def _plain(value: Any) -> Any:
@@ -182,7 +189,7 @@ def _plain(value: Any) -> Any:
             return _plain(value.tolist())
         case dict():
             return {key: _plain(item) for key, item in value.items()}
-        case list():
+        case list() | tuple():
             return [_plain(item) for item in value]
         case float() if not math.isfinite(value):
             return None

@@ -165,11 +165,8 @@ impl Model {
     fn fix(&mut self, py: Python<'_>, body: &str, at: At, coordinates: Vec<String>) -> PyResult<()> {
         let place = Self::place(py, at)?;
         let id = checked(py, self.model.find(body))?;
-        for coordinate in &coordinates {
-            let fix: Fix = checked(py, coordinate.parse())?;
-            checked(py, self.edit().fix(id, place, fix))?;
-        }
-        Ok(())
+        let fixes = coordinates.iter().map(|name| checked(py, name.parse())).collect::<PyResult<Vec<Fix>>>()?;
+        checked(py, self.edit().fix(id, place, &fixes))
     }
 
     #[pyo3(signature = (body, at, coordinates, *, translation, shake, rotation))]

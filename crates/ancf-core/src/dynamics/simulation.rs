@@ -1,7 +1,8 @@
 //! Steps strung together: outputs, rejected steps, checkpoints.
 
+use crate::assembly::Reaction;
 use crate::nonlinear::Failure;
-use crate::observe::Observer;
+use crate::observe::{Observer, State};
 use crate::report::Counts;
 
 use super::Options;
@@ -158,14 +159,9 @@ impl<'a> Simulation<'a> {
                 }
             }
             self.counts.steps += 1;
+            let mut reactions = None;
             while let Some(t) = outputs.next_if(|t| *t <= self.next.t) {
-                let quintic = self.integrator.order() > 2;
-                let state = if t == self.next.t {
-                    self.next.output(&mut self.equations)
-                } else {
-                    Instantaneous::between(&self.now, &self.next, t, quintic).output(&mut self.equations)
-                };
-                observer.state(state);
+                observer.state(self.output(t, &mut reactions));
             }
             std::mem::swap(&mut self.now, &mut self.next);
             self.middles.accept();
@@ -176,6 +172,23 @@ impl<'a> Simulation<'a> {
             observer.checkpoint(&|states| self.checkpoint().to_bytes(states), false);
         }
         Ok(())
+    }
+
+    /// The output at a time of the step just made. `reactions` are those at its ends, once they are needed.
+    fn output(&mut self, t: f64, reactions: &mut Option<[Vec<Reaction>; 2]>) -> State {
+        let Self { equations, integrator, .. } = self;
+        let (now, next) = (&self.now, &self.next);
+        if t == next.t {
+            return next.output(equations);
+        }
+        let mut state = Instantaneous::between(now, next, t, integrator.order() > 2).output(equations);
+        // Interpolated positions are strained in a way that the motion is not: forces are interpolated themselves.
+        let [from, to] = reactions.get_or_insert_with(|| [now, next].map(|end| equations.reactions(end).1));
+        let share = (t - now.t) / (next.t - now.t);
+        for (reaction, (from, to)) in state.reactions.iter_mut().zip(from.iter().zip(to)) {
+            *reaction = Reaction { point: reaction.point, ..from.towards(to, share) };
+        }
+        state
     }
 
     fn try_step(&mut self, observer: &dyn Observer) -> Result<(), Failure> {

@@ -107,7 +107,7 @@ fn contradictory_motions_are_refused() {
     let before = model.clone();
     let error = model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(3.0)).unwrap_err();
     assert_eq!(error.argument, "at");
-    assert!(model.fix(body, "corner:x0y1".parse().unwrap(), r[0]).is_err());
+    assert!(model.fix(body, "corner:x0y1".parse().unwrap(), &[r[0]]).is_err());
     assert_eq!((model.fixed(), model.moved()), (before.fixed(), before.moved()), "nothing is changed by an error");
     model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(2.0)).unwrap();
     let late = SupportMotion {
