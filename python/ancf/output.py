@@ -172,7 +172,7 @@ def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
     energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
     probes = {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()}
     reactions = [_reaction(reaction) for reaction in result.reactions]
-    summary |= {"probes": probes, "reactions": reactions, "energy": _plain(energy)}
+    summary |= {"probes": probes, "energy": _plain(energy), "reactions": reactions}
     if isinstance(result.run, Static):
         summary["jumps"] = _plain(result.jumps)
     return summary

@@ -36,6 +36,9 @@ pub trait Observer {
     /// An output was reached.
     fn state(&mut self, state: State);
 
+    /// Outputs after a time are not sound: their steps had not been stable.
+    fn withdraw(&mut self, _after: f64) {}
+
     /// Time (or load factor) that has been reached.
     fn reached(&mut self, _t: f64) {}
 
@@ -58,5 +61,9 @@ pub trait Observer {
 impl Observer for Vec<State> {
     fn state(&mut self, state: State) {
         self.push(state);
+    }
+
+    fn withdraw(&mut self, after: f64) {
+        self.retain(|state| state.t <= after);
     }
 }

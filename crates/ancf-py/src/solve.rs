@@ -33,6 +33,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// What a solve tells while it runs.
 enum Event {
     State(State),
+    /// Outputs after a time are not sound.
+    Withdraw(f64),
     Reached(f64),
     /// A checkpoint was written, or could not be.
     Checkpoint(std::io::Result<()>),
@@ -84,6 +86,13 @@ impl Observer for Messenger {
         }
         // Nobody listens any more when the solve was left behind; it stops at its next iteration.
         let _ = self.events.send(Event::State(state));
+    }
+
+    fn withdraw(&mut self, after: f64) {
+        if let Some(saved) = &mut self.saved {
+            saved.states.withdraw(after);
+        }
+        let _ = self.events.send(Event::Withdraw(after));
     }
 
     fn reached(&mut self, t: f64) {
@@ -139,6 +148,7 @@ fn run(
     let exception = loop {
         match py.detach(|| receive(&mut receiver, PERIOD)) {
             Ok(Event::State(state)) => states.push(state),
+            Ok(Event::Withdraw(after)) => states.withdraw(after),
             Ok(Event::Reached(t)) => reached = t,
             Ok(Event::Checkpoint(done)) => unsaved = done.err(),
             Ok(Event::End(end)) => {
@@ -167,6 +177,7 @@ fn run(
         let left = deadline.saturating_duration_since(Instant::now());
         match py.detach(|| receive(&mut receiver, left)) {
             Ok(Event::State(state)) => states.push(state),
+            Ok(Event::Withdraw(after)) => states.withdraw(after),
             Ok(Event::Reached(t)) => reached = t,
             Ok(Event::Checkpoint(done)) => unsaved = done.err(),
             Ok(Event::End(end)) => return finish(py, end, states, coordinates, reached, unsaved, Some(exception)),
