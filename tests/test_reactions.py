@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 import ancf
 from ancf import reference
+from ancf.loads import Load
 from ancf.output import summarize
 from ancf.report import describe
 from ancf.run import Method
@@ -23,18 +24,19 @@ LENGTH, WIDTH, THICKNESS = 1.0, 0.1, 0.01
 
 
 def strip(material: ancf.Material = STEEL, **settings: Any) -> ancf.Rectangle:
-    given = {"size": (LENGTH, WIDTH), "divisions": (6, 1), "thickness": THICKNESS, "material": material} | settings
-    return ancf.Rectangle(**given)
+    given: dict[str, Any] = {"size": (LENGTH, WIDTH), "divisions": (6, 1), "thickness": THICKNESS}
+    return ancf.Rectangle(material=material, **given | settings)
 
 
-def model(body: ancf.Rectangle, *items: ancf.Support | Any) -> ancf.Model:
+def model(body: ancf.Rectangle, *items: ancf.Support | Load) -> ancf.Model:
     supports = [item for item in items if isinstance(item, ancf.Support)]
-    return ancf.Model(bodies={"strip": body}, supports=supports, loads=[item for item in items if item not in supports])
+    loads = [item for item in items if not isinstance(item, ancf.Support)]
+    return ancf.Model(bodies={"strip": body}, supports=supports, loads=loads)
 
 
 def total(result: ancf.Result) -> FloatArray:
     """The forces of all supports together, (states, 3)."""
-    return np.sum([reaction.force for reaction in result.reactions], axis=0)
+    return np.asarray(sum(reaction.force for reaction in result.reactions))
 
 
 @pytest.mark.parametrize("element", ELEMENTS)

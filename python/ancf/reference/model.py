@@ -110,7 +110,7 @@ class Model:
         for name in coordinates:
             vector, _, direction = name.partition(".")
             component = DIRECTIONS.index(direction) if direction else slice(None)
-            self._nodal(held)[nodes, self.vectors.index(vector), component] = True
+            held.reshape(-1, len(self.vectors), 3)[nodes, self.vectors.index(vector), component] = True
         # What two supports hold belongs to the first.
         self._supports.append((nodes, np.flatnonzero(held & ~self._fixed)))
         self._fixed |= held
