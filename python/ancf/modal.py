@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -208,6 +208,10 @@ class ModalResult:
     def visible(self) -> list[int]:
         """Return the modes that are not rigid, or all if there are no others."""
         return np.flatnonzero(self.frequency).tolist() or list(range(len(self.frequency)))
+
+
+AnyResult: TypeAlias = Result | ModalResult
+"""What any run leaves, for what shows and writes all of them."""
 
 
 def modes(

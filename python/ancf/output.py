@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 
 from ancf.errors import InputError, Mistake
-from ancf.modal import ModalResult
+from ancf.modal import AnyResult, ModalResult
 from ancf.records import Reaction
-from ancf.result import Result
 from ancf.run import Static
 
 SUMMARY = "summary.json"
@@ -116,7 +115,7 @@ def replacing(*paths: Path) -> Iterator[tuple[Path, ...]]:
             source.unlink(missing_ok=True)
 
 
-def write_result(folder: Path, title: str, result: Result | ModalResult) -> None:
+def write_result(folder: Path, title: str, result: AnyResult) -> None:
     """Write summary.json and result.npz: the arrays t, q, v, a, or of modes frequency, eigenvalue, shapes, q.
 
     Parameters
@@ -142,7 +141,7 @@ def write_result(folder: Path, title: str, result: Result | ModalResult) -> None
         summary.write_text(json.dumps(summarize(title, result), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
+def summarize(title: str, result: AnyResult) -> dict[str, Any]:
     """Return what summary.json holds; numbers that are not finite become None.
 
     Parameters

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from ancf.errors import show
-from ancf.modal import ModalResult
+from ancf.modal import AnyResult, ModalResult
 from ancf.probes import QUANTITIES
 from ancf.result import Result
 
 _MODES = 20
 
 
-def describe(title: str, result: Result | ModalResult) -> str:
+def describe(title: str, result: AnyResult) -> str:
     """Say in a few lines how a run went and where it ended.
 
     Parameters
