@@ -30,10 +30,11 @@ from ancf.balance import EnergyWarning
 from ancf.bodies import Annulus, Cylinder, Rectangle, Sphere
 from ancf.courses import CourseWarning
 from ancf.errors import InputError, Interrupted, Mistake, SolveError
+from ancf.find_modes import modes
 from ancf.loads import Force, Gravity, LineLoad, Moment, Pressure
 from ancf.mapped import Surface
 from ancf.materials import Material
-from ancf.modal import ModalResult, modes
+from ancf.modal import ModalResult
 from ancf.model import Model
 from ancf.plan import Plan, plan
 from ancf.probes import Probe

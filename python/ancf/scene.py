@@ -16,10 +16,11 @@ from pydantic import PlainValidator, ValidationInfo, field_validator
 
 from ancf.bodies import SHAPES, Plate
 from ancf.errors import InputError, Mistake, Mistakes, one_of
+from ancf.find_modes import find_modes
 from ancf.inputs import Input, table
 from ancf.loads import Load
 from ancf.materials import Material
-from ancf.modal import AnyResult, ModalResult, find_modes
+from ancf.modal import AnyResult, ModalResult
 from ancf.model import Model
 from ancf.output import replacing
 from ancf.probes import Probe
