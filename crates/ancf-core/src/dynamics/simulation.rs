@@ -168,12 +168,16 @@ impl<'a> Simulation<'a> {
 
     /// The output at a time of the step just made. `reactions` are those at its ends, once they are needed.
     fn output(&mut self, t: f64, reactions: &mut Option<[Vec<Reaction>; 2]>) -> State {
+        let rounding = self.rounding();
         let Self { equations, integrator, .. } = self;
         let (now, next) = (&self.now, &self.next);
         if t == next.t {
             return next.output(equations);
         }
         let mut state = Instantaneous::between(now, next, t, integrator.order() > 2).output(equations);
+        if [now.t, next.t].iter().any(|end| (t - end).abs() <= rounding) {
+            return state;
+        }
         // Interpolated positions are strained in a way that the motion is not: forces are interpolated themselves.
         let [from, to] = reactions.get_or_insert_with(|| [now, next].map(|end| equations.reactions(end).1));
         let share = (t - now.t) / (next.t - now.t);
