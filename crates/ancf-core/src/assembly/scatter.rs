@@ -152,7 +152,12 @@ impl Scatter {
                     let forces = &portion.force[element * size..(element + 1) * size];
                     for (corner, forces) in slots.corners.iter().zip(forces.chunks_exact(size / 4)) {
                         let target = if corner.inside { &mut *force } else { &mut border[1] };
-                        add(&mut target[corner.first[1] as usize..], forces);
+                        let target = &mut target[corner.first[1] as usize..];
+                        match size {
+                            36 => add_node::<9>(target, forces),
+                            48 => add_node::<12>(target, forces),
+                            _ => add(target, forces),
+                        }
                     }
                 }
                 if !portion.tangent.is_empty() {
@@ -207,6 +212,15 @@ fn each<T: Send>(count: usize, tasks: impl Iterator<Item = T>, work: impl Fn(T) 
         tasks.for_each(work);
     } else {
         tasks.collect::<Vec<_>>().into_par_iter().for_each(work);
+    }
+}
+
+/// Adds the forces of a node, of known number.
+fn add_node<const SIZE: usize>(sums: &mut [f64], parts: &[f64]) {
+    let sums = sums.first_chunk_mut::<SIZE>().expect("forces of the node");
+    let parts = parts.first_chunk::<SIZE>().expect("forces of the node");
+    for i in 0..SIZE {
+        sums[i] += parts[i];
     }
 }
 
