@@ -15,19 +15,28 @@ import ancf
 
 FloatArray = NDArray[np.float64]
 Element: TypeAlias = Literal["thin36", "thin48", "full48a", "full48b"]
+Curvature: TypeAlias = Literal["paper", "koiter"]
 
 LENGTH, WIDTH, THICKNESS, E = 1.0, 0.1, 1e-3, 1e7
 
 
-def bend(element: Element, load_factors: list[float]) -> ancf.Result:
+def bend(
+    element: Element,
+    load_factors: list[float],
+    *,
+    thickness: float = THICKNESS,
+    divisions: tuple[int, int] = (16, 1),
+    curvature: Curvature | None = None,
+) -> ancf.Result:
     strip = ancf.Rectangle(
         size=(LENGTH, WIDTH),
-        divisions=(16, 1),
-        thickness=THICKNESS,
+        divisions=divisions,
+        thickness=thickness,
         material=ancf.Material(E=E, nu=0.0),
         element=element,
+        curvature=curvature,
     )
-    moment = 2 * np.pi * E * THICKNESS**3 / 12 / LENGTH
+    moment = 2 * np.pi * E * thickness**3 / 12 / LENGTH
     model = ancf.Model(
         bodies={"strip": strip},
         supports=[ancf.Support(at="edge:x0", clamp=True)],
@@ -78,3 +87,24 @@ def test_a_small_moment_bends_exactly(element: Element) -> None:
     result = bend(element, [1e-5])
     found = (result.energy.bending + result.energy.membrane)[-1]
     assert found == pytest.approx(energy(result.t)[-1], rel=1e-8)
+
+
+@pytest.mark.parametrize(("curvature", "multiple"), [("paper", 10), ("koiter", 2)])
+def test_a_thicker_strip_turns_too_far_by_what_its_law_says(curvature: Curvature, multiple: int) -> None:
+    """By multiples of e = h^2 k^2 / 12, k = M / (E I), to first order in e.
+
+    A line of the strip that turns by t and is stretched by s, lines across by c, has the energy
+    E h (e_x^2 + e_y^2) / 2 + E I K^2 / 2 per area, e_x = (s^2 - 1) / 2, e_y = (c^2 - 1) / 2.
+    Koiter's K = s t: s^2 = 1 - 2 e, c = 1 and M = E I s^2 t, so t = k (1 + 2 e).
+    The paper's K = s t / (s c)^2: s^2 = 1 + 2 e, c^2 = 1 + 4 e and M = E I t / (s^2 c^4), so t = k (1 + 10 e).
+    The clamp keeps a short piece from widening: the middle half is measured.
+    """
+    thickness = LENGTH / 120
+    result = bend("thin36", [0.5, 0.95], thickness=thickness, divisions=(32, 4), curvature=curvature)
+    assert result.reached == 0.95
+    angle = 0.95 * 2 * np.pi
+    gradient = result.q[-1].reshape(-1, 3, 3)[[2 * 33 + 8, 2 * 33 + 24], 1]
+    first, last = np.arctan2(gradient[:, 2], gradient[:, 0])
+    turned = np.mod(last - first, 2 * np.pi) / (angle / 2)
+    strain = thickness**2 / 12 * (angle / LENGTH) ** 2
+    assert turned - 1 == pytest.approx(multiple * strain, rel=0.02)
