@@ -1,6 +1,8 @@
 //! The extension module `ancf._core`: declarations only, the mechanics is in `ancf_core`.
 
+mod arguments;
 mod arrays;
+mod background;
 mod errors;
 mod model;
 mod run;
