@@ -20,7 +20,7 @@ from peers import EXUDYN, UNTIL, Program, python_with_exudyn
 import ancf
 from ancf.chart import Label, Rival, default_axes, measure, write_chart
 from ancf.chart.report import describe
-from ancf.result import Record
+from ancf.records import Record
 from ancf.sweep import Timing
 
 SCENE = Path(__file__).parent.parent / "examples" / "pendulum.toml"

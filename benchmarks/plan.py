@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from plan_aside import aside
 from plan_scenes import Case, developed, made_later
 from plan_unseen import first_round, kept, last_round
 
@@ -73,7 +74,7 @@ def judge(name: str) -> list[Line]:
     """Plan a scene to all tolerances, and compare with references and a chart."""
     case = next(
         case
-        for case in (*developed(), *made_later(), *first_round(), *kept(), *last_round())
+        for case in (*developed(), *made_later(), *first_round(), *kept(), *last_round(), *aside())
         if case.scene.title == name
     )
     pilots = Pilots(case.scene, ["A"], 1e9, 1)
@@ -174,7 +175,7 @@ def main() -> None:
     options = parser.parse_args()
     sets = {"developed on": developed(), "made later": made_later(), "first unseen": first_round()}
     if options.holdout:
-        sets = {"kept": kept(), "of the last round": last_round()}
+        sets = {"kept": kept(), "of the last round": last_round(), "put aside": aside()}
     named = {name: [case.scene.title for case in cases] for name, cases in sets.items()}
     columns = "scene, tolerance, chosen, true error, promised, reference to, s, cheapest s, ratio, plan s, reference s"
     print(f"| {columns.replace(', ', ' | ')} |")

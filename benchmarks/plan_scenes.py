@@ -77,7 +77,7 @@ def statics() -> Iterator[Case]:
     moment = ancf.Moment(at="edge:x1", per_length=2e-3)
     yield Case(scene("foil rolled", foil, [WALL], [moment], (0.5, 0.05), run), ((48, 24), (64, 32)))
     yield Case(
-        scene("dome pressed", dome, [end], [ancf.Pressure(pressure=-2e4)], (0.4, 0.8), run), ((24, 48), (32, 64))
+        scene("dome pressed", dome, [end], [ancf.Pressure(pressure=-2e4)], (0.4, 0.8), run), ((40, 64), (56, 80))
     )
 
 
@@ -160,11 +160,11 @@ def later_statics() -> Iterator[Case]:
         radius=0.05, angle=(0.0, 3.0), length=(0.0, 0.3), divisions=(4, 4), thickness=2e-3, material=RUBBER
     )
     edge = line("y1", 0.0, -0.1, 0.0)
-    yield Case(scene("rubber gutter", tube, [foot], [edge], (1.5, 0.3), run), ((16, 64), (24, 80)))
+    yield Case(scene("rubber gutter", tube, [foot], [edge], (1.5, 0.3), run), ((32, 128), (48, 160)))
     cap = ancf.Sphere(
         radius=0.2, longitude=(0.0, 1.2), latitude=(0.2, 1.0), divisions=(4, 4), thickness=4e-4, material=PAPER
     )
-    yield Case(scene("paper cap", cap, [foot], [line("y1", 0.0, 0.0, 3.0)], (0.6, 1.0), run), ((40, 40), (56, 56)))
+    yield Case(scene("paper cap", cap, [foot], [line("y1", 0.0, 0.0, 3.0)], (0.6, 1.0), run), ((40, 112), (56, 128)))
     band = plate((1.0, 0.05), 1e-3, RUBBER)
     roll = ancf.Moment(at="edge:x1", per_length=4.5e-4)
     yield Case(scene("rubber rolled", band, [WALL], [roll], (1.0, 0.025), run), ((48, 4), (64, 8)))
@@ -223,10 +223,10 @@ def later_motions() -> Iterator[Case]:
     push = ancf.LineLoad(at="edge:y1", per_length=(1e4, 0.0, 0.0), history=[(0.0, 0.0), (3e-3, 1.0)])
     yield Case(
         scene("pipe pushed", pipe, [foot], [push], (0.75, 0.3), ancf.Dynamic(until=4e-3, step=2e-5)),
-        ((8, 28), (10, 40)),
+        ((24, 40), (32, 56)),
         x,
         (1, 2, 4, 8),
-        Stepping("verlet", rtol=1e-4),
+        Stepping("esdirk", step=4e-3 / 48),
     )
     bar = plate((0.4, 0.05), 0.04, STEEL)
     spin = ancf.Force(at=(0.0, 0.05), force=(0.0, 80.0, 5.0))

@@ -24,13 +24,15 @@ def first_statics() -> Iterator[Case]:
         radius=0.3, angle=(0.2, 1.2), length=(0.0, 0.25), divisions=(4, 4), thickness=3e-4, material=PAPER
     )
     aside = ancf.Gravity(acceleration=(0.0, -9.81, 0.0))
-    yield Case(scene("leaf sags", leaf, [FOOT], [aside], (0.2, 0.25), run), ((40, 40), (64, 64)))
+    yield Case(scene("leaf sags", leaf, [FOOT], [aside], (0.2, 0.25), run), ((40, 80), (64, 96)))
     vault = ancf.Cylinder(
         radius=2.54, angle=(1.47, 1.67), length=(0.0, 0.508), divisions=(4, 4), thickness=12.7e-3, material=STEEL
     )
     hinges = [HINGE, ancf.Support(at="edge:x1", fix=["r"])]
     weight = ancf.Force(at=(1.57, 0.254), force=(0.0, -6e4, 0.0))
-    yield Case(scene("vault loaded", vault, hinges, [weight], (1.57, 0.254), run, "displacement"), ((64, 64), (80, 80)))
+    yield Case(
+        scene("vault loaded", vault, hinges, [weight], (1.57, 0.254), run, "displacement"), ((64, 128), (80, 128))
+    )
     tape = plate((0.4, 0.04), 2e-3, RUBBER)
     yield Case(
         scene("tape bends", tape, [WALL], [line("x1", 0, 0, 0.1)], (0.13, 0.02), run, "curvature"),
@@ -44,7 +46,7 @@ def first_statics() -> Iterator[Case]:
         (1, 2, 3, 4, 6, 8, 12, 16),
     )
     foil = plate((0.5, 0.2), 5e-5, STEEL)
-    yield Case(scene("foil sags", foil, [WALL], [WEIGHT], (0.5, 0.0), run, "displacement"), ((32, 12), (48, 20)))
+    yield Case(scene("foil sags", foil, [WALL], [WEIGHT], (0.5, 0.0), run, "displacement"), ((64, 12), (96, 20)))
 
 
 def first_motions() -> Iterator[Case]:
@@ -108,7 +110,7 @@ def kept_statics() -> Iterator[Case]:
         radius=0.4, longitude=(0.0, 0.9), latitude=(0.5, 1.1), divisions=(4, 4), thickness=6e-3, material=RUBBER
     )
     held = ancf.Support(at="edge:y0", fix=["r"])
-    yield Case(scene("cap hinged", cap, [held, HINGE], [WEIGHT], (0.9, 1.1), run, "displacement"), ((24, 24), (32, 32)))
+    yield Case(scene("cap hinged", cap, [held, HINGE], [WEIGHT], (0.9, 1.1), run, "displacement"), ((32, 32), (48, 48)))
     shelf = plate((0.6, 0.25), 0.01, STEEL)
     post = ancf.Force(at=(0.6, 0.25), force=(0.0, 0.0, -900.0))
     sides = [WALL, FOOT]
@@ -177,7 +179,7 @@ def last_statics() -> Iterator[Case]:
         radius=0.3, longitude=(0.0, 2.0), latitude=(-0.3, 0.4), divisions=(4, 4), thickness=2e-3, material=STEEL
     )
     pull = [line("y1", 0.0, 0.0, 4e3)]
-    yield Case(scene("zone pulled", zone, [FOOT], pull, (1.2, 0.4), run), ((40, 20), (64, 32)))
+    yield Case(scene("zone pulled", zone, [FOOT], pull, (1.2, 0.4), run), ((40, 48), (64, 64)))
 
 
 def last_motions() -> Iterator[Case]:

@@ -84,7 +84,6 @@ VARIANTS: Mapping[str, list[dict[str, Any]]] = {
 def solve(scene: ancf.Scene) -> ancf.Result:
     """Solve a static scene."""
     result = scene.solve()
-    assert isinstance(result, ancf.Result)
     return result
 
 

@@ -42,6 +42,7 @@ def test_run_writes_summary_and_states(scenes: Path, tmp_path: Path, capsys: pyt
     found = summary(folder)
     assert list(found) == [
         "title", "status", "reached", "reason", "advice", "warnings", "counts", "seconds", "probes", "energy",
+        "reactions",
     ]  # fmt: skip
     assert found["warnings"] == []
     assert (found["title"], found["status"], found["reason"]) == ("Small pendulum", "ok", "")

@@ -253,6 +253,17 @@ def test_titles_are_plain_text(pendulum: ancf.Model, tmp_path: Path) -> None:
     result.plot("$a_{$").savefig(tmp_path / "plate.png")
 
 
+def test_what_the_usual_font_lacks_is_drawn_in_another(
+    pendulum: ancf.Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    letter = "\N{COMBINING ENCLOSING CIRCLE}"  # not of DejaVu, but of another font of Matplotlib's
+    result = ancf.simulate(pendulum, until=0.01, step=5e-3)
+    with pytest.warns(UserWarning, match="Glyph 8413 .* missing"):
+        result.plot(letter).savefig(tmp_path / "plate.png")
+    monkeypatch.setattr("ancf.text._FAMILIES", ("none such", "STIXGeneral"))
+    result.plot(letter).savefig(tmp_path / "plate.png")
+
+
 def test_too_many_outputs_are_refused(pendulum: ancf.Model) -> None:
     with pytest.raises(ancf.InputError, match="every = 1e-12: must be at least until / 1000000"):
         ancf.simulate(pendulum, until=0.01, step=1e-3, every=1e-12)

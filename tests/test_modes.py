@@ -217,7 +217,16 @@ def test_a_scene(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         np.testing.assert_array_equal(arrays["frequency"], frequency)
         assert arrays["shapes"].shape == (8, 90)
     assert {path.name for path in folder.iterdir()} == {"summary.json", "result.npz", "plate.png", "motion.gif"}
-    assert ancf.Scene.of(ancf.load_scene(scene).document()) == ancf.load_scene(scene)
+    read = ancf.load_scene(scene)
+    assert ancf.Scene.of(read.document()) == read
+    np.testing.assert_array_equal(read.modes().frequency, frequency)
+    with pytest.raises(ancf.InputError, match=r"run\.kind = modes: is found by Scene\.modes"):
+        read.solve()
+
+
+def test_a_scene_of_another_kind_has_no_modes(scenes: Path) -> None:
+    with pytest.raises(ancf.InputError, match=r"run\.kind = dynamic: is run by Scene\.solve"):
+        ancf.load_scene(scenes / "pendulum.toml").modes()
 
 
 def test_mistakes_in_a_scene(tmp_path: Path, edit: Callable[..., Path]) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 import ancf
 from ancf.cli import main
-from ancf.result import Energy
+from ancf.records import Energy
 from ancf.stability import run_suite
 from ancf.stability.cells import classify, energy_gain
 from ancf.stability.expect import Case, agree, balanced, closer, ends, fails_or_gains, fewer_iterations, near, well

@@ -78,8 +78,6 @@ def test_steps_of_any_size_end_in_the_same_state(name: str) -> None:
         ).solve()
         for count in (1, 50)
     )
-    assert isinstance(coarse, ancf.Result)
-    assert isinstance(fine, ancf.Result)
     assert coarse.reached == fine.reached == 1.0
     assert (len(coarse.jumps) > 0) == (len(fine.jumps) > 0) == snaps
     assert coarse.counts["steps"] < 15

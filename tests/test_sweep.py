@@ -32,7 +32,6 @@ def test_an_outcome_is_what_the_scene_gives_in_this_process(scene: ancf.Scene, t
     (outcome,) = sweep([Variant.of(scene)], tmp_path / "log.jsonl", limit=60)
     assert outcome is not None
     expected = scene.solve()
-    assert isinstance(expected, ancf.Result)
     assert (outcome.status, outcome.reason) == ("ok", "")
     assert outcome.reached == expected.reached
     assert outcome.counts == expected.counts

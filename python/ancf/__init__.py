@@ -30,14 +30,16 @@ from ancf.balance import EnergyWarning
 from ancf.bodies import Annulus, Cylinder, Rectangle, Sphere
 from ancf.courses import CourseWarning
 from ancf.errors import InputError, Interrupted, Mistake, SolveError
+from ancf.find_modes import modes
 from ancf.loads import Force, Gravity, LineLoad, Moment, Pressure
 from ancf.mapped import Surface
 from ancf.materials import Material
-from ancf.modal import ModalResult, modes
+from ancf.modal import ModalResult
 from ancf.model import Model
 from ancf.plan import Plan, plan
 from ancf.probes import Probe
-from ancf.result import Energy, Record, Result
+from ancf.records import Energy, Reaction, Record
+from ancf.result import Result
 from ancf.run import CheckpointWarning, Dynamic, Modes, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import simulate, solve_static
@@ -65,6 +67,7 @@ __all__ = [
     "Plan",
     "Pressure",
     "Probe",
+    "Reaction",
     "Record",
     "Rectangle",
     "Result",

@@ -143,6 +143,8 @@ class Run:
     @property
     def angular_momentum(self) -> _FloatArray: ...  # (states, 3) kg m2/s about the origin
     @property
+    def reactions(self) -> _FloatArray: ...  # (states, supports, 9): point (m), force (N), moment about it (N m)
+    @property
     def counts(self) -> dict[str, int]: ...  # of `Result.counts`
     @property
     def seconds(self) -> dict[str, float]: ...  # total, setup, assembly, factorization, solve

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ancf.result import Energy
+    from ancf.records import Energy
     from ancf.run import Dynamic
 
 _GAIN = 0.05

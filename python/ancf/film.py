@@ -6,7 +6,6 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.animation import AbstractMovieWriter, FFMpegWriter, PillowWriter
 from matplotlib.figure import Figure
@@ -16,6 +15,7 @@ from ancf.modal import ModalResult
 from ancf.plot import heading, mode_name
 from ancf.result import Result
 from ancf.stage import Stage
+from ancf.text import plain_text
 
 _FACETS = 600
 _FRAMES = 100
@@ -41,7 +41,7 @@ def animate(result: Result, path: str | os.PathLike[str], title: str = "") -> No
     InputError
         If the file has another ending, or ffmpeg is needed and missing.
     """
-    with mpl.rc_context({"text.parse_math": False}):
+    with plain_text():
         _animate(result, path, title)
 
 
@@ -53,7 +53,7 @@ def animate_mode(result: ModalResult, path: str | os.PathLike[str], title: str =
     number = shown[0] if mode is None else mode
     q = result.oscillation(number, np.linspace(0, 2 * np.pi, _FRAMES_OF_MODES, endpoint=False))
     name = mode_name(result, number)
-    with mpl.rc_context({"text.parse_math": False}):
+    with plain_text():
         figure = _figure()
         stage = Stage(figure, result.model, q, _FACETS, rest=result.q, bar=False)
         _film(path, figure, stage, [f"{title}, {name}" if title else name] * len(q), range(len(q)))

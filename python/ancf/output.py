@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from ancf.errors import InputError, Mistake
-from ancf.modal import ModalResult
-from ancf.result import Result
+from ancf.modal import AnyResult, ModalResult
+from ancf.records import Reaction
 from ancf.run import Static
 
 SUMMARY = "summary.json"
@@ -115,7 +115,7 @@ def replacing(*paths: Path) -> Iterator[tuple[Path, ...]]:
             source.unlink(missing_ok=True)
 
 
-def write_result(folder: Path, title: str, result: Result | ModalResult) -> None:
+def write_result(folder: Path, title: str, result: AnyResult) -> None:
     """Write summary.json and result.npz: the arrays t, q, v, a, or of modes frequency, eigenvalue, shapes, q.
 
     Parameters
@@ -141,7 +141,7 @@ def write_result(folder: Path, title: str, result: Result | ModalResult) -> None
         summary.write_text(json.dumps(summarize(title, result), indent=1, allow_nan=False) + "\n", encoding="utf-8")
 
 
-def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
+def summarize(title: str, result: AnyResult) -> dict[str, Any]:
     """Return what summary.json holds; numbers that are not finite become None.
 
     Parameters
@@ -170,10 +170,16 @@ def summarize(title: str, result: Result | ModalResult) -> dict[str, Any]:
         return summary | {"modes": {"frequency": _plain(result.frequency)}}
     energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
     probes = {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()}
-    summary |= {"probes": probes, "energy": _plain(energy)}
+    reactions = [_reaction(reaction) for reaction in result.reactions]
+    summary |= {"probes": probes, "energy": _plain(energy), "reactions": reactions}
     if isinstance(result.run, Static):
         summary["jumps"] = _plain(result.jumps)
     return summary
+
+
+def _reaction(reaction: Reaction) -> dict[str, Any]:
+    arrays = {name: _plain(getattr(reaction, name)) for name in ("t", "point", "force", "moment")}
+    return {"body": reaction.support.body, "at": _plain(reaction.support.at), **arrays}
 
 
 def _plain(value: Any) -> Any:
@@ -182,7 +188,7 @@ def _plain(value: Any) -> Any:
             return _plain(value.tolist())
         case dict():
             return {key: _plain(item) for key, item in value.items()}
-        case list():
+        case list() | tuple():
             return [_plain(item) for item in value]
         case float() if not math.isfinite(value):
             return None

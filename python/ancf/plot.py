@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
@@ -13,6 +12,7 @@ from ancf.modal import ModalResult
 from ancf.probes import QUANTITIES, Probe, Quantity
 from ancf.result import Result
 from ancf.stage import Stage, short
+from ancf.text import plain_text
 
 _FACETS = 2500
 _FACETS_OF_MODES = 900
@@ -35,7 +35,7 @@ def plot(result: Result, title: str = "") -> Figure:
     matplotlib.figure.Figure
         To be saved with its ``savefig``.
     """
-    with mpl.rc_context({"text.parse_math": False}):
+    with plain_text():
         return _plot(result, title)
 
 
@@ -53,7 +53,7 @@ def _plot(result: Result, title: str) -> Figure:
 
 def plot_modes(result: ModalResult, title: str = "", count: int = 6) -> Figure:
     """Draw the shapes of the first modes that are not rigid, see `ModalResult.plot`."""
-    with mpl.rc_context({"text.parse_math": False}):
+    with plain_text():
         return _plot_modes(result, title, count)
 
 

@@ -6,14 +6,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ancf.modal import ModalResult
+from ancf.errors import show
+from ancf.modal import AnyResult, ModalResult
 from ancf.probes import QUANTITIES
 from ancf.result import Result
 
 _MODES = 20
 
 
-def describe(title: str, result: Result | ModalResult) -> str:
+def describe(title: str, result: AnyResult) -> str:
     """Say in a few lines how a run went and where it ended.
 
     Parameters
@@ -54,6 +55,11 @@ def _last_state(result: Result) -> list[str]:
     for probe in result.model.probes:
         values = _numbers(result.probes[probe.name].value[-1])
         rows.append((f"{probe.name} {probe.quantity}", values, QUANTITIES[probe.quantity].unit))
+    for reaction in result.reactions:
+        body = f"{reaction.support.body} " if len(result.model.bodies) > 1 else ""
+        at = f"support {body}{show(reaction.support.at)}"
+        rows.append((f"{at} force", _numbers(reaction.force[-1]), "N"))
+        rows.append((f"{at} moment", _numbers(reaction.moment[-1]), "N m"))
     for name in ("kinetic", "membrane", "bending", "loads", "dissipated"):
         rows.append((f"energy {name}", _numbers([getattr(result.energy, name)[-1]]), "J"))
     width = max(len(name) for name, _, _ in rows)

@@ -13,6 +13,7 @@ from ancf.balance import EnergyWarning, balance_warnings
 from ancf.courses import CourseWarning, course_warnings
 from ancf.model import Model
 from ancf.probes import Probe, Quantity
+from ancf.records import Energy, FloatArray, Reaction, Record
 from ancf.run import CheckpointWarning, Dynamic, Static
 
 if TYPE_CHECKING:
@@ -21,52 +22,11 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-FloatArray = NDArray[np.float64]
 Status = Literal["ok", "failed", "interrupted"]
 
 
 _RESTS = 1e-9
 """Changes of nodal coordinates, relative to their range, that are none: strains of them square to rounding."""
-
-
-@dataclass(frozen=True, eq=False)
-class Record:
-    """What a probe recorded.
-
-    Parameters
-    ----------
-    t : ndarray, shape (states,)
-        Times, s, or load factors.
-    value : ndarray, shape (states, components)
-        In the unit of the quantity, see `Probe`.
-    """
-
-    t: FloatArray
-    value: FloatArray
-
-
-@dataclass(frozen=True, eq=False)
-class Energy:
-    """Energies.
-
-    Parameters
-    ----------
-    t : ndarray, shape (states,)
-        Times, s, or load factors.
-    kinetic, membrane, bending : ndarray, shape (states,)
-        J.
-    loads : ndarray, shape (states,)
-        The work that the loads and moved supports have done, J.
-    dissipated : ndarray, shape (states,)
-        What damping has taken, J. What the balance still misses is the work of the integrator.
-    """
-
-    t: FloatArray
-    kinetic: FloatArray
-    membrane: FloatArray
-    bending: FloatArray
-    loads: FloatArray
-    dissipated: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +54,8 @@ class Result:
         statics v and a are zero.
     probes : dict of str to Record
         What each probe recorded.
+    reactions : tuple of Reaction
+        What each support of the model exerts, in their order.
     energy : Energy
         Energies and the work of the loads.
     momentum, angular_momentum : ndarray, shape (states, 3)
@@ -122,6 +84,7 @@ class Result:
     v: FloatArray = field(repr=False)
     a: FloatArray = field(repr=False)
     probes: dict[str, Record] = field(repr=False)
+    reactions: tuple[Reaction, ...] = field(repr=False)
     energy: Energy = field(repr=False)
     momentum: FloatArray = field(repr=False)
     angular_momentum: FloatArray = field(repr=False)
@@ -138,6 +101,8 @@ class Result:
             value = model.evaluate(probe.body, [probe.at], probe.quantity, core.q, core.v)
             return Record(core.t, value[:, 0, :])
 
+        # Of no state the compiled module knows no supports either.
+        reactions = core.reactions.reshape(len(core.t), len(model.supports), 9)
         return cls(
             model=model,
             run=run,
@@ -151,6 +116,10 @@ class Result:
             v=core.v,
             a=core.a,
             probes={probe.name: record(probe) for probe in model.probes},
+            reactions=tuple(
+                Reaction(support, core.t, *np.split(reactions[:, index], 3, axis=1))
+                for index, support in enumerate(model.supports)
+            ),
             energy=Energy(core.t, **core.energy),
             momentum=core.momentum,
             angular_momentum=core.angular_momentum,

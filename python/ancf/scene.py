@@ -16,10 +16,11 @@ from pydantic import PlainValidator, ValidationInfo, field_validator
 
 from ancf.bodies import SHAPES, Plate
 from ancf.errors import InputError, Mistake, Mistakes, one_of
+from ancf.find_modes import find_modes
 from ancf.inputs import Input, table
 from ancf.loads import Load
 from ancf.materials import Material
-from ancf.modal import ModalResult, find_modes
+from ancf.modal import AnyResult, ModalResult
 from ancf.model import Model
 from ancf.output import replacing
 from ancf.probes import Probe
@@ -152,8 +153,8 @@ class Scene:
         threads: int | None = None,
         progress: Progress = None,
         throw: bool = True,
-    ) -> Result | ModalResult:
-        """Run the scene.
+    ) -> Result:
+        """Run a scene of statics or motion; one of the kind "modes" has `modes`.
 
         Parameters
         ----------
@@ -162,8 +163,8 @@ class Scene:
 
         Returns
         -------
-        Result or ModalResult
-            The state at the start, then one for each output; or of a run of the kind "modes" these.
+        Result
+            The state at the start, then one for each output.
 
         Raises
         ------
@@ -174,16 +175,63 @@ class Scene:
         Interrupted
             On Ctrl-C; `Interrupted.result` holds what it had.
         """
+        if isinstance(self.run, Modes):
+            raise InputError(Mistake(("run", "kind"), "is found by Scene.modes, not by Scene.solve", "modes"))
         start = None
         if isinstance(self.run, Dynamic):
             start = partial(self.run.start, checkpoint=checkpoint, resume=resume)
-        elif checkpoint is not None or resume is not None:
-            given = "checkpoint" if resume is None else "resume"
-            raise InputError(Mistake((given,), "is for motion only"))
+        else:
+            _check_no_checkpoint(checkpoint, resume)
         with _scene_paths({}):
-            if isinstance(self.run, Modes):
-                return find_modes(self.model, self.run, threads=threads, progress=progress, throw=throw)
             return solve(self.model, self.run, threads=threads, progress=progress, throw=throw, start=start)
+
+    def modes(self, *, threads: int | None = None, progress: Progress = None, throw: bool = True) -> ModalResult:
+        """Find the modes of a scene of the kind "modes".
+
+        Parameters
+        ----------
+        threads, progress, throw : optional
+            As in `ancf.modes`.
+
+        Returns
+        -------
+        ModalResult
+            Frequencies and shapes.
+
+        Raises
+        ------
+        InputError
+            If the model cannot be run in this way.
+        SolveError
+            If the run fails; `SolveError.result` holds what it had.
+        Interrupted
+            On Ctrl-C; `Interrupted.result` holds what it had.
+        """
+        if not isinstance(self.run, Modes):
+            raise InputError(Mistake(("run", "kind"), "is run by Scene.solve, not by Scene.modes", self.run.kind))
+        with _scene_paths({}):
+            return find_modes(self.model, self.run, threads=threads, progress=progress, throw=throw)
+
+
+def run_scene(
+    scene: Scene,
+    *,
+    checkpoint: str | os.PathLike[str] | None = None,
+    resume: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: Progress = None,
+    throw: bool = True,
+) -> AnyResult:
+    """Run a scene of whatever kind, for what does not know which: see `Scene.solve` and `Scene.modes`."""
+    if isinstance(scene.run, Modes):
+        _check_no_checkpoint(checkpoint, resume)
+        return scene.modes(threads=threads, progress=progress, throw=throw)
+    return scene.solve(checkpoint=checkpoint, resume=resume, threads=threads, progress=progress, throw=throw)
+
+
+def _check_no_checkpoint(checkpoint: str | os.PathLike[str] | None, resume: str | os.PathLike[str] | None) -> None:
+    if checkpoint is not None or resume is not None:
+        raise InputError(Mistake(("checkpoint" if resume is None else "resume",), "is for motion only"))
 
 
 def load_scene(path: str | os.PathLike[str]) -> Scene:

@@ -23,7 +23,7 @@ fn pendulum() -> Arc<Model> {
     let mut model = Model::new();
     let surface = Surface::rectangle([0.3, 0.3]).unwrap();
     let body = model.add_body("plate", &surface, [8, 8], plate(1e5, 0.01, Membrane::Full)).unwrap();
-    model.fix(body, "corner:x0y0".parse().unwrap(), Fix { vector: NodalVector::R, component: None }).unwrap();
+    model.fix(body, "corner:x0y0".parse().unwrap(), &[Fix { vector: NodalVector::R, component: None }]).unwrap();
     let kind = LoadKind::Gravity([0.0, 0.0, -9.81]);
     model.add_load(Load { kind, history: History::Constant }).unwrap();
     Arc::new(model)

@@ -91,6 +91,18 @@ impl<S: Simd> Lanes<S> {
     }
 }
 
+/// Adds numbers to as many others.
+#[inline(always)]
+pub fn add<S: Simd>(simd: S, sums: &mut [f64], parts: &[f64]) {
+    let ((sums, last), (parts, others)) = (S::as_mut_simd_f64s(sums), S::as_simd_f64s(parts));
+    for (sum, part) in sums.iter_mut().zip(parts) {
+        *sum = simd.add_f64s(*sum, *part);
+    }
+    for (sum, part) in last.iter_mut().zip(others) {
+        *sum += part;
+    }
+}
+
 /// Numbers of several elements from lanes to one element after the other.
 #[derive(Clone, Copy, Debug)]
 pub struct Transpose<S: Simd> {

@@ -1,6 +1,6 @@
 //! What a solve tells while it runs, and how it is stopped.
 
-use crate::assembly::StrainEnergy;
+use crate::assembly::{Reaction, StrainEnergy};
 
 /// A state that was accepted: an output of a solve.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,8 @@ pub struct State {
     pub momentum: [f64; 3],
     /// Angular momentum about the origin, kg m2/s.
     pub angular_momentum: [f64; 3],
+    /// What each support exerts, in the order in which they were added.
+    pub reactions: Vec<Reaction>,
     /// Negative pivots of the tangent near this state that count as instabilities, where they were counted.
     pub negative_pivots: Option<usize>,
 }
@@ -33,6 +35,9 @@ pub struct State {
 pub trait Observer {
     /// An output was reached.
     fn state(&mut self, state: State);
+
+    /// Outputs after a time are not sound: their steps had not been stable.
+    fn withdraw(&mut self, _after: f64) {}
 
     /// Time (or load factor) that has been reached.
     fn reached(&mut self, _t: f64) {}
@@ -56,5 +61,9 @@ pub trait Observer {
 impl Observer for Vec<State> {
     fn state(&mut self, state: State) {
         self.push(state);
+    }
+
+    fn withdraw(&mut self, after: f64) {
+        self.retain(|state| state.t <= after);
     }
 }

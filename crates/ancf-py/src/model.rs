@@ -5,8 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ancf_core::assembly::System;
 use ancf_core::element::{Kind, Membrane, Want};
 use ancf_core::evaluate::{MaterialPoint, Quantity};
-use ancf_core::mesh::Place;
-use ancf_core::model::{Course, Fix, History, Load, LoadKind, Plate, SupportMotion};
+use ancf_core::model::{Course, Load, LoadKind, Plate, SupportMotion};
 use ancf_core::strain::CurvatureLaw;
 use ancf_core::{Damping, InputError, Material, model};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1, PyReadonlyArray2};
@@ -14,27 +13,10 @@ use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
+use crate::arguments::{At, Factors, fixes, named};
 use crate::arrays::{coordinates, matrix, stack, states, vector};
-use crate::errors::{checked, input_error};
+use crate::errors::checked;
 use crate::shape::Shape;
-
-/// A place on a body as Python says it.
-#[derive(FromPyObject)]
-pub enum At {
-    /// "corner:x0y0", "edge:x1", "all".
-    Name(String),
-    /// A material point.
-    Point([f64; 2]),
-}
-
-/// A history as Python says it.
-#[derive(FromPyObject)]
-pub enum Factors {
-    /// "constant", "ramp".
-    Name(String),
-    /// Rows [t, factor].
-    Table(Vec<[f64; 2]>),
-}
 
 /// Bodies, supports and loads.
 #[pyclass(module = "ancf._core")]
@@ -73,42 +55,10 @@ impl Model {
         Ok(use_it(system))
     }
 
-    fn place(py: Python<'_>, at: At) -> PyResult<Place> {
-        match at {
-            At::Name(name) => checked(py, name.parse()),
-            At::Point(point) => Ok(Place::Point(point)),
-        }
-    }
-
-    fn history(py: Python<'_>, factors: Factors) -> PyResult<History> {
-        match factors {
-            Factors::Name(name) if name == "constant" => Ok(History::Constant),
-            Factors::Name(name) if name == "ramp" => Ok(History::Ramp),
-            Factors::Name(name) => {
-                let error = InputError::new("history", format!("\"{name}\""), "constant, ramp, or rows [t, factor]");
-                Err(input_error(py, &error))
-            }
-            Factors::Table(rows) => checked(py, History::table(rows)),
-        }
-    }
-
     fn add(&mut self, py: Python<'_>, kind: LoadKind, history: Factors) -> PyResult<()> {
-        let history = Self::history(py, history)?;
+        let history = history.history(py)?;
         checked(py, self.edit().add_load(Load { kind, history }))
     }
-}
-
-/// Finds what `name` names among `all`.
-fn named<T: Copy>(
-    py: Python<'_>,
-    argument: &str,
-    name: &str,
-    all: &[T],
-    name_of: fn(T) -> &'static str,
-) -> PyResult<T> {
-    let found = all.iter().copied().find(|item| name_of(*item) == name);
-    let allowed = || all.iter().map(|item| name_of(*item)).collect::<Vec<_>>().join(", ");
-    checked(py, found.ok_or_else(|| InputError::new(argument, format!("\"{name}\""), allowed())))
 }
 
 /// Values at times `t` of the smooth curve through rows `[t, value]` on which supports move.
@@ -163,13 +113,10 @@ impl Model {
     }
 
     fn fix(&mut self, py: Python<'_>, body: &str, at: At, coordinates: Vec<String>) -> PyResult<()> {
-        let place = Self::place(py, at)?;
+        let place = at.place(py)?;
         let id = checked(py, self.model.find(body))?;
-        for coordinate in &coordinates {
-            let fix: Fix = checked(py, coordinate.parse())?;
-            checked(py, self.edit().fix(id, place, fix))?;
-        }
-        Ok(())
+        let fixes = fixes(py, &coordinates)?;
+        checked(py, self.edit().fix(id, place, &fixes))
     }
 
     #[pyo3(signature = (body, at, coordinates, *, translation, shake, rotation))]
@@ -184,9 +131,9 @@ impl Model {
         shake: Option<([f64; 3], f64)>,
         rotation: Option<Turn>,
     ) -> PyResult<()> {
-        let place = Self::place(py, at)?;
+        let place = at.place(py)?;
         let id = checked(py, self.model.find(body))?;
-        let fixes = coordinates.iter().map(|name| checked(py, name.parse())).collect::<PyResult<Vec<Fix>>>()?;
+        let fixes = fixes(py, &coordinates)?;
         let mut motion = SupportMotion::default();
         for (axis, direction) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
             if let Some(rows) = &translation {
@@ -208,7 +155,7 @@ impl Model {
     }
 
     fn add_force(&mut self, py: Python<'_>, body: &str, at: At, force: [f64; 3], history: Factors) -> PyResult<()> {
-        let place = Self::place(py, at)?;
+        let place = at.place(py)?;
         let body = checked(py, self.model.find(body))?;
         let point = checked(py, self.model.point_at(body, place))?;
         self.add(py, LoadKind::Force { body, point, force }, history)
@@ -222,13 +169,13 @@ impl Model {
         per_length: [f64; 3],
         history: Factors,
     ) -> PyResult<()> {
-        let edge = checked(py, model::Model::edge_at(Self::place(py, at)?))?;
+        let edge = checked(py, model::Model::edge_at(at.place(py)?))?;
         let body = checked(py, self.model.find(body))?;
         self.add(py, LoadKind::Line { body, edge, per_length }, history)
     }
 
     fn add_moment(&mut self, py: Python<'_>, body: &str, at: At, per_length: f64, history: Factors) -> PyResult<()> {
-        let edge = checked(py, model::Model::edge_at(Self::place(py, at)?))?;
+        let edge = checked(py, model::Model::edge_at(at.place(py)?))?;
         let body = checked(py, self.model.find(body))?;
         self.add(py, LoadKind::Moment { body, edge, per_length }, history)
     }

@@ -2,11 +2,11 @@
 
 use ancf_core::observe::State;
 use ancf_core::report::{self, Outcome};
-use numpy::{PyArray1, PyArray2};
+use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{matrix, vector};
+use crate::arrays::{matrix, stack, vector};
 
 /// Every output of a solve up to its end, and how it ended.
 #[pyclass(frozen, module = "ancf._core")]
@@ -138,6 +138,15 @@ impl Run {
     #[getter]
     fn angular_momentum<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray2<f64>> {
         self.table(py, 3, |state| &state.angular_momentum)
+    }
+
+    /// Of each state and support: point, force, moment.
+    #[getter]
+    fn reactions<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray3<f64>> {
+        let supports = self.states.first().map_or(0, |state| state.reactions.len());
+        let all = self.states.iter().flat_map(|state| &state.reactions);
+        let values = all.flat_map(|r| [r.point, r.force, r.moment]).flatten().collect();
+        stack(py, (self.states.len(), supports, 9), values)
     }
 
     #[getter]

@@ -17,6 +17,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from ancf.chart.measure import Chart
 from ancf.chart.points import LEVELS, Point, Winner, front, percent, winners
+from ancf.text import plain_text
 
 PALETTE = ("#0b6bcb", "#d1495b", "#2a9d5c", "#8e5ea2", "#e08e0b", "#1aa6b7", "#7a6a58", "#b0489a")
 """Colours of elements."""
@@ -44,7 +45,7 @@ def draw(chart: Chart) -> Figure:
     matplotlib.figure.Figure
         To be saved with its ``savefig``.
     """
-    with mpl.rc_context({"text.parse_math": False, "axes.edgecolor": _SOFT, "axes.labelcolor": _INK, "font.size": 10}):
+    with plain_text(), mpl.rc_context({"axes.edgecolor": _SOFT, "axes.labelcolor": _INK, "font.size": 10}):
         return _draw(chart)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ancf.chart.labels import Label
-from ancf.result import Record
+from ancf.records import Record
 from ancf.sweep import Timing
 
 LEVELS = (0.1, 0.01, 0.001)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ancf.errors import InputError, Mistake
-from ancf.result import Record
+from ancf.records import Record
 from ancf.run import Dynamic, Static
 from ancf.scene import Scene
 from ancf.sweep import Outcome, Variant

@@ -12,7 +12,7 @@ from ancf.commands.plan import add_options, make_plan, promise
 from ancf.commands.signals import deferred_signals
 from ancf.errors import InputError, Interrupted, Mistake
 from ancf.fields import check_fields
-from ancf.modal import ModalResult
+from ancf.modal import AnyResult
 from ancf.output import (
     FIELDS,
     PICTURE,
@@ -24,8 +24,7 @@ from ancf.output import (
     write_result,
 )
 from ancf.report import describe
-from ancf.result import Result
-from ancf.scene import Scene, load_scene
+from ancf.scene import Scene, load_scene, run_scene
 
 if TYPE_CHECKING:
     from ancf.commands import Subparsers
@@ -91,8 +90,9 @@ def call(options: argparse.Namespace) -> int:
     return OK if planned is None else promise(planned, folder)
 
 
-def _solve(options: argparse.Namespace, scene: Scene) -> Result | ModalResult:
-    return scene.solve(
+def _solve(options: argparse.Namespace, scene: Scene) -> AnyResult:
+    return run_scene(
+        scene,
         checkpoint=options.checkpoint or options.resume,
         resume=options.resume,
         threads=options.threads,
@@ -101,7 +101,7 @@ def _solve(options: argparse.Namespace, scene: Scene) -> Result | ModalResult:
     )
 
 
-def _write_extras(options: argparse.Namespace, title: str, result: Result | ModalResult, film: Path | None) -> None:
+def _write_extras(options: argparse.Namespace, title: str, result: AnyResult, film: Path | None) -> None:
     folder = options.output
     if options.fields:
         result.write_fields(folder / FIELDS)

@@ -11,8 +11,8 @@ import numpy as np
 
 from ancf.plan.climb import Climb
 from ancf.plan.errors import distance, scales
-from ancf.plan.ladder import Choice, Family, Rung
-from ancf.plan.learn import COMPARED, compare, learn
+from ancf.plan.ladder import Choice, Family, Rung, Stepping
+from ancf.plan.learn import COMPARED, learn, separate
 from ancf.plan.pilots import Pilot
 from ancf.plan.search import Search
 from ancf.plan.timing import SHARE
@@ -87,7 +87,7 @@ class Ascent:
         if reached and not going:
             # The error of each may turn out to be larger, so that the other leads.
             for _ in search.climbs:
-                compare(search, search.lead)
+                separate(search, search.lead)
         return reached
 
     def _promising(self, going: Sequence[Climb]) -> Climb:
@@ -128,7 +128,9 @@ class Ascent:
         spent = search.pilots.spent
         part = _CLEAR if cost <= _LITTLE * spent else BEST if cost <= _MUCH * spent else _COARSE
         small = lead.refined and lead.own <= part * search.tol and (lead.ended or not lead.sudden)
-        return small and self._confirmed(search.best, part)
+        if small:
+            separate(search, lead)
+        return small and lead.own <= part * search.tol and self._confirmed(search.best, part)
 
     def _step(self, climb: Climb) -> None:
         """Run the next rung of a climb and learn from it, or end the climb."""
@@ -165,29 +167,44 @@ class Ascent:
         return pilot
 
     def _compare_steps(self, climb: Climb) -> None:
-        """Before a rung is run with another stepping than the last one, see that the two agree there, or shorten it.
+        """Before the next rung is run, see that all steppings that were run on the last one agree, or shorten one.
 
         Steps that are short enough on the coarse mesh, on which they were found, may not be on a finer one, and then
-        the error in time would be taken for one in space.
+        the error in time would be taken for one in space, or be common to all finer meshes and not be seen at all.
         """
-        last = climb.rung
+        search, last = self.search, climb.rung
         for _ in range(_SHORTER):
-            stepping = self.search.stepping(climb.next)
+            stepping = search.stepping(climb.next)
             if last is None or stepping is None:
                 return
-            known = [
-                self.search.pilots.known(Choice(last, other)) for other in self.search.allowed if other != stepping
-            ]
-            others = [pilot.values for pilot in known if pilot is not None]
+            kinds: dict[object, Stepping] = {}
+            for known in search.allowed:
+                # The shortest of each kind comes first.
+                kinds.setdefault(known.kind, known)
+            kinds.pop(stepping.kind)
+            done = [search.pilots.known(Choice(last, other)) for other in kinds.values()]
+            others = [pilot for pilot in done if pilot is not None]
             if not others:
                 return
-            own = self.search.pilots.run(Choice(last, stepping), _AFFORDED * self.search.pilots.left)
+            own = search.pilots.run(Choice(last, stepping), _AFFORDED * search.pilots.left)
             if not own.ok:
                 return
             scale = scales(own.values)
-            if min(distance(own.values, values, scale) for values in others) <= 2 * SHARE * self.search.tol:
+            farthest = max(others, key=lambda pilot: distance(own.values, pilot.values, scale))
+            if distance(own.values, farthest.values, scale) <= 2 * SHARE * search.tol:
                 return
-            self.search.shorten(stepping, stepping.tighter())
+            self._shorten_one(own, farthest)
+
+    def _shorten_one(self, *pilots: Pilot) -> None:
+        """Of two steppings that disagree on a rung shorten the one that changes more with shorter steps."""
+        changes = {}
+        for pilot in pilots:
+            stepping = pilot.choice.stepping
+            assert stepping is not None
+            tight = self.search.pilots.run(replace(pilot.choice, stepping=stepping.tighter()))
+            changes[stepping] = distance(tight.values, pilot.values, scales(pilot.values)) if tight.ok else 0.0
+        worse = max(changes, key=changes.__getitem__)
+        self.search.shorten(worse, worse.tighter())
 
     def _reconsider(self, climb: Climb) -> None:
         """Go on with another family of the element where it is much nearer to what another element tells.

@@ -23,6 +23,8 @@ class Climb:
         What is run next.
     rung : Rung or None
         The finest that reached its end; None before the first.
+    last : Rung or None
+        The one before it.
     exact : list of ndarray
         The wanted quantities of `rung`, extrapolated where rates are known.
     own : float
@@ -31,6 +33,8 @@ class Climb:
         Differences and rates along body and axis.
     refined : bool
         Whether `rung` is finer than one before it: a single difference may be small by accident.
+    apart : bool
+        Whether what two sides changed has cancelled, so that it is told apart.
     rate : float
         With which `own` shrank when it was refined last, as a power of 2, in the range that is trusted.
     stalled : int
@@ -41,17 +45,19 @@ class Climb:
 
     next: Rung
     rung: Rung | None = None
+    last: Rung | None = None
     exact: Values = field(default_factory=list)
     own: float = np.inf
     sides: dict[tuple[int, int], Side] = field(default_factory=dict)
     refined: bool = False
+    apart: bool = False
     rate: float = UNKNOWN_RATE
     stalled: int = 0
     ended: bool = False
 
     def restart(self, rung: Rung) -> None:
         """Begin anew with a rung of another family."""
-        self.next, self.rung = rung, None
+        self.next, self.rung, self.last = rung, None, None
         self.exact, self.own, self.sides, self.refined = [], np.inf, {}, False
         self.rate, self.stalled = UNKNOWN_RATE, 0
 

@@ -14,6 +14,8 @@ from ancf.plan.search import Search
 
 COMPARED = 32
 """Elements up to which a rung is compared with neighbours that are coarser along one side."""
+_PAIR, _CANCELLED = 2, 1.5
+"""Sides whose changes are told apart, and times what they change together from which on they have cancelled."""
 _TRUST = 0.5
 """Part of the error that remains when it is extrapolated, or when another element comes to the same."""
 
@@ -22,7 +24,8 @@ def learn(search: Search, climb: Climb) -> None:
     """Set the finest rung, what is known along its sides, the extrapolated values and what they lack.
 
     Small rungs are compared with their neighbours that are coarser along one side. Of larger ones only the last
-    rung is at hand: its difference is shared out along the sides that were refined as the errors were before.
+    rung is at hand: its difference is shared out along the sides that were refined as the errors were before, unless
+    what two of them changed has cancelled once.
     """
     rung, last = climb.next, climb.rung
     values = search.values(rung)
@@ -51,35 +54,50 @@ def learn(search: Search, climb: Climb) -> None:
         total = distance(values, coarse, scale)
         expected = {side: before[side].error for side in refined if side in before}
         share = sum(expected.values())
+        parts = _parts(search, rung, last) if climb.apart else {}
         for side in refined:
-            part = total * expected.get(side, 0.0) / share if share else total
+            part = parts.get(side, total * expected.get(side, 0.0) / share if share else total)
             climb.sides[side] = Side(part, before[side].rate_to(part) if side in before else None)
-    climb.rung, climb.exact, climb.refined = rung, values, last is not None
+    climb.rung, climb.last, climb.exact, climb.refined = rung, last, values, last is not None
     # Nothing is known of a side along which no coarser rung reached its end.
     known = all(side in climb.sides for side in rung.sides())
-    climb.own = sum(side.error for side in climb.sides.values()) if known else np.inf
+    together = max if climb.apart else sum
+    climb.own = together(side.error for side in climb.sides.values()) if known else np.inf
     if last is not None and refined and all(climb.sides[side].steady for side in refined if side in climb.sides):
         _extrapolate(search, climb, last, scale, refined)
         _agree(search, climb, scale)
 
 
-def compare(search: Search, climb: Climb) -> None:
-    """Compare the finest rung of a climb that ended too early with its neighbours that are coarser along one side.
-
-    Where both sides were refined at once what they change may have cancelled.
-    """
-    rung = climb.rung
-    values = None if rung is None else search.values(rung)
-    if rung is None or values is None:
+def separate(search: Search, climb: Climb) -> None:
+    """Tell what two sides of a large mesh that were refined at once have changed: it may have cancelled."""
+    rung, last = climb.rung, climb.last
+    if rung is None or last is None or rung.elements <= COMPARED or climb.apart:
         return
+    parts = _parts(search, rung, last)
+    values, coarse = search.values(rung), search.values(last)
+    if not parts or values is None or coarse is None:
+        return
+    if sum(parts.values()) > _CANCELLED * distance(values, coarse, scales(values)):
+        climb.sides.update({side: Side(part, None) for side, part in parts.items()})
+        # Of opposite signs, the larger one bounds both together.
+        climb.own = max(climb.own, *(side.error for side in climb.sides.values()))
+        climb.exact, climb.apart = values, True
+
+
+def _parts(search: Search, rung: Rung, last: Rung) -> dict[tuple[int, int], float]:
+    """Return what each of two sides has changed; the rung between, finer along one of them only, tells it."""
+    refined = [side for side in rung.sides() if _count(rung, side) > _count(last, side)]
+    between = rung.scaled(refined[0], Fraction(1, 2)) if len(refined) == _PAIR else None
+    values, coarse = search.values(rung), search.values(last)
+    if between is None or values is None or coarse is None:
+        return {}
+    pilot = search.run(between, search.pilots.left / 2)
+    if not pilot.ok:
+        return {}
     scale = scales(values)
-    for side in rung.sides():
-        half = rung.scaled(side, Fraction(1, 2))
-        pilot = None if half is None else search.run(half, search.pilots.left / 2)
-        if pilot is not None and pilot.ok:
-            old = climb.sides.get(side)
-            climb.sides[side] = Side(distance(values, pilot.values, scale), old.rate if old else None)
-    climb.own = max(climb.own, sum(side.error for side in climb.sides.values()))
+    return dict(
+        zip(refined, (distance(values, pilot.values, scale), distance(pilot.values, coarse, scale)), strict=True)
+    )
 
 
 def _extrapolate(

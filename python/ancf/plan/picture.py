@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import matplotlib as mpl
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from ancf.plan.report import Plan
 from ancf.probes import QUANTITIES
+from ancf.text import plain_text
 
 _STYLES = ("-", "--", ":")
 _ROUNDING = 1e-16
@@ -27,7 +27,7 @@ def draw(plan: Plan) -> Figure:
     matplotlib.figure.Figure
         Two panels.
     """
-    with mpl.rc_context({"text.parse_math": False}):
+    with plain_text():
         figure = Figure(figsize=(9, 3.6), dpi=130, layout="constrained")
         left, right = figure.subplots(1, 2)
         tried: dict[str, list[tuple[float, float]]] = {}

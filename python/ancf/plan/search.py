@@ -12,12 +12,16 @@ from ancf.plan.cost import Costs
 from ancf.plan.errors import Side, Values, distance, scales
 from ancf.plan.ladder import Choice, Family, Rung, Stepping
 from ancf.plan.pilots import Pilot, Pilots
-from ancf.plan.timing import Timing
+from ancf.plan.timing import SHARE, Timing
 
 _MARGIN = 0.85
 """Part of the tolerance that estimates may promise: they are no bounds."""
 _LEFT = 0.5
 """Part of what tighter steps change that is left when it is taken out: a third at the second order."""
+_TIGHTENED = 4
+"""Times that steps are tightened until that changes little."""
+_ALIKE = 2.0
+"""Times an estimate that is above the tolerance up to which another one says the same."""
 _ROUNDING = 1e-13
 """Relative differences below it are none."""
 _OTHER = np.log(4.0)
@@ -58,6 +62,8 @@ class Search:
         Error in time that is left in what is known best, relative.
     late : list of ndarray or None
         What tighter steps change of it.
+    stepped : Stepping or None
+        Than which they are tighter.
     """
 
     pilots: Pilots
@@ -72,6 +78,7 @@ class Search:
     climbs: list[Climb] = field(default_factory=list)
     in_time: float = 0.0
     late: Values | None = None
+    stepped: Stepping | None = None
     _alike: dict[tuple[Family, int, Stepping | None], Pilot | None] = field(default_factory=dict)
     _of_kind: dict[tuple[str, bool, bool] | None, list[Pilot]] = field(default_factory=dict)
     _runs: int = -1
@@ -88,8 +95,14 @@ class Search:
 
     @property
     def lead(self) -> Climb:
-        """The climb with the smallest error."""
-        return min((climb for climb in self.climbs if climb.rung is not None), key=lambda climb: climb.own)
+        """The climb with the smallest error; where none is small, the one with the finest mesh unless it tells more.
+
+        Estimates that are far from their end say little of which is the better one.
+        """
+        known = [climb for climb in self.climbs if climb.rung is not None]
+        least = min(known, key=lambda climb: climb.own)
+        finest = max(known, key=lambda climb: climb.rung.elements if climb.rung else 0)
+        return finest if least.own > self.tol and finest.own <= _ALIKE * least.own else least
 
     @property
     def best(self) -> Rung:
@@ -106,20 +119,31 @@ class Search:
     def correct(self, rung: Rung) -> None:
         """Take out of what is known best what tighter steps change on a rung; set what is left of the error in time.
 
-        Where that cannot be run, what was found on the coarse mesh must do.
+        Steps that were short enough on the coarse mesh may damp or miss what moves fast on a finer one: they are
+        tightened until that changes little. Where that cannot be run, what was found on the coarse mesh must do.
         """
-        stepping = self.stepping(self.best)
-        if stepping is None:
+        if not self.timings:
             return
-        own = self.pilots.run(Choice(rung, stepping))
-        tight = self.pilots.run(Choice(rung, stepping.tighter()))
-        if not own.ok or not tight.ok:
-            return
-        change = distance(tight.values, own.values, scales(own.values))
-        self.late = [after - before for after, before in zip(tight.values, own.values, strict=True)]
-        # The limit of stability may set the steps of both: then tighter control tells nothing.
-        if change > _ROUNDING:
-            self.in_time = _LEFT * change
+        if self.stepped is None:
+            self.stepped = self.stepping(self.best)
+        assert self.stepped is not None
+        first = last = self.pilots.run(Choice(rung, self.stepped))
+        for _ in range(_TIGHTENED):
+            assert last.choice.stepping is not None
+            stepping = last.choice.stepping.tighter()
+            tight = self.pilots.run(Choice(rung, stepping))
+            if not last.ok or not tight.ok:
+                return
+            change = distance(tight.values, last.values, scales(last.values))
+            self.late = [after - before for after, before in zip(tight.values, first.values, strict=True)]
+            # The limit of stability may set the steps of both: then tighter control tells nothing.
+            if change > _ROUNDING:
+                self.in_time = _LEFT * change
+            if change <= SHARE * self.tol:
+                return
+            if change > 2 * SHARE * self.tol and last.choice.stepping in self.allowed:
+                self.shorten(last.choice.stepping, stepping)
+            last = tight
 
     @property
     def own(self) -> float:

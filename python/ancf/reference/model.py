@@ -1,6 +1,7 @@
 """A plate or shell with supports and loads: the global system."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,6 +17,14 @@ from .surface import Surface, plane
 from .thin import CurvatureKind, MembraneRule
 
 DIRECTIONS = ("x", "y", "z")
+
+
+class Reaction(NamedTuple):
+    """What a support exerts: a force (N) at the mean position of its nodes (m), a moment (N m) about it; each (3,)."""
+
+    point: FloatArray
+    force: FloatArray
+    moment: FloatArray
 
 
 class Model:
@@ -66,6 +75,7 @@ class Model:
         self._energies = self.element.energies()
         self.mass = self._assemble_matrix(self._index, einsum("eab,ij->eaibj", self.element.mass(), np.eye(3)))
         self._fixed = np.zeros(self.coordinates, dtype=np.bool_)
+        self._supports: list[tuple[IndexArray, IndexArray]] = []
         self._loads: list[Load] = []
 
     @property
@@ -95,11 +105,15 @@ class Model:
 
     def fix(self, at: At, coordinates: Sequence[str]) -> None:
         """Fix vectors ("r", "r_x", ...) or components ("r.x", "r_y.z", ...) of the nodes at a place."""
-        fixed = self._fixed.reshape(-1, len(self.vectors), 3)
+        held = np.zeros_like(self._fixed)
+        nodes = self.mesh.select(at)
         for name in coordinates:
             vector, _, direction = name.partition(".")
             component = DIRECTIONS.index(direction) if direction else slice(None)
-            fixed[self.mesh.select(at), self.vectors.index(vector), component] = True
+            held.reshape(-1, len(self.vectors), 3)[nodes, self.vectors.index(vector), component] = True
+        # What two supports hold belongs to the first.
+        self._supports.append((nodes, np.flatnonzero(held & ~self._fixed)))
+        self._fixed |= held
 
     def clamp(self, at: At) -> None:
         """Fix all vectors of the nodes at a place."""
@@ -169,6 +183,21 @@ class Model:
             (load.factor(t) * self._assemble_vector(self._index[load.cells], load.force(e)) for load in self._loads),
             np.zeros(self.coordinates),
         )
+
+    def reactions(self, q: FloatArray, t: float, a: FloatArray | None = None) -> list[Reaction]:
+        """Return what each support exerts: the residual M a + Q_k - Q_e of the coordinates that it holds."""
+        residual = self.internal_force(q) - self.external_force(q, t)
+        if a is not None:
+            residual = residual + self.mass @ a
+        found = []
+        for nodes, held in self._supports:
+            forces, arms = np.zeros_like(q), self._nodal(q).copy()
+            forces[held] = residual[held]
+            point = arms[nodes, 0].mean(axis=0)
+            arms[:, 0] -= point
+            moment = np.cross(arms, self._nodal(forces)).sum(axis=(0, 1))
+            found.append(Reaction(point, self._nodal(forces)[:, 0].sum(axis=0), moment))
+        return found
 
     def load_stiffness(self, q: FloatArray, t: float) -> sp.csc_array:
         """Symmetric part of dQ_e/dq, shape (n, n)."""

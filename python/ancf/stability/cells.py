@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from ancf.result import Energy
+from ancf.records import Energy
 from ancf.sweep import Outcome
 
 Kind: TypeAlias = Literal["accurate", "wrong", "unknown", "growth", "newton", "blow-up", "refused", "time limit"]

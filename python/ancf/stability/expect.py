@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ancf.result import Record
+from ancf.records import Record
 from ancf.stability.cells import energy_gain
 from ancf.sweep import Outcome, Variant
 

@@ -13,6 +13,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from ancf.stability.cells import ACCURATE, KINDS, Kind
 from ancf.stability.scan import Map
+from ancf.text import plain_text
 
 COLOURS: dict[Kind, str] = {
     "accurate": "#3a9d68",
@@ -41,7 +42,7 @@ def draw(found: Map) -> Figure:
     matplotlib.figure.Figure
         To be saved with its ``savefig``.
     """
-    with mpl.rc_context({"text.parse_math": False, "axes.edgecolor": _SOFT}):
+    with plain_text(), mpl.rc_context({"axes.edgecolor": _SOFT}):
         return _draw(found)
 
 

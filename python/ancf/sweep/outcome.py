@@ -8,7 +8,7 @@ from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
-from ancf.result import Energy, Record
+from ancf.records import Energy, Record
 
 Ending: TypeAlias = Literal["ok", "failed", "refused", "time limit", "crashed"]
 

@@ -19,7 +19,7 @@ from ancf.balance import EnergyWarning
 from ancf.courses import CourseWarning
 from ancf.errors import InputError
 from ancf.output import summarize
-from ancf.scene import Scene
+from ancf.scene import Scene, run_scene
 from ancf.sweep.outcome import lost
 
 
@@ -42,7 +42,7 @@ def answer(scene: dict[str, Any], threads: int) -> dict[str, Any]:
     try:
         made = Scene.of(scene)
         began = time.process_time()
-        result = made.solve(threads=threads, throw=False)
+        result = run_scene(made, threads=threads, throw=False)
     except InputError as error:
         return lost("refused", str(error))
     summary = summarize("", result)

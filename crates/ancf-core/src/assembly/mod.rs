@@ -1,7 +1,7 @@
 //! The global system of a model: mass, forces and tangent, and the linear equations for its free coordinates.
 //!
 //! `numbering` gives the free coordinates their numbers, `columns` the entries of the tangent their places; `parts` cuts
-//! the model into tasks, `scatter` sums what their elements give, `tangent` their tangents. `loads` holds what acts on the model (`follower` what turns with it), `mass` its inertia. `forces` evaluates elements
+//! the model into tasks, `scatter` sums what their elements give, `tangent` their tangents. `loads` holds what acts on the model (`follower` what turns with it), `mass` its inertia, `reactions` what supports give. `forces` evaluates elements
 //! and sums them, `solve` factorises the tangent and solves with it, `stability` counts the ways that lead away from
 //! a state.
 
@@ -12,6 +12,7 @@ mod loads;
 mod mass;
 mod numbering;
 mod parts;
+mod reactions;
 mod scatter;
 mod solve;
 mod stability;
@@ -31,6 +32,8 @@ use mass::{mass_damping, mass_matrix};
 use numbering::Numbering;
 use scatter::{Scatter, Subtotal};
 
+pub(crate) use reactions::Bodies;
+pub use reactions::Reaction;
 pub use totals::{StrainEnergy, StrainRates, Timers};
 
 /// The equations of a model, with everything that stays while the state changes made once.

@@ -2,7 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::lanes::Transpose;
+use crate::lanes::{Transpose, add};
 use crate::strain::packed;
 
 use super::columns::Columns;
@@ -81,13 +81,7 @@ fn add_columns<S: Simd, const SIDE: usize>(
     for (j, column) in block.iter().enumerate() {
         // What lies above the diagonal is zero, and may be added to the end of the column before.
         let entries = target.first_chunk_mut::<SIDE>().expect("rows of the node");
-        let ((sums, last), (parts, others)) = (S::as_mut_simd_f64s(entries), S::as_simd_f64s(column));
-        for (sum, part) in sums.iter_mut().zip(parts) {
-            *sum = simd.add_f64s(*sum, *part);
-        }
-        for (sum, part) in last.iter_mut().zip(others) {
-            *sum += part;
-        }
+        add(simd, entries, column);
         if j + 1 < SIDE {
             target = &mut target[length - j - 1..];
         }

@@ -9,7 +9,7 @@ pub struct Timers {
     pub setup: Duration,
     /// Forces and tangents.
     pub assembly: Duration,
-    /// Of these, the sums over the elements at each node.
+    /// Of those with tangents, the sums over the elements at each node.
     pub scatter: Duration,
     /// Numeric factorisations.
     pub factorization: Duration,

@@ -1,6 +1,6 @@
 //! What is needed to continue a motion to the same bits.
 
-use crate::assembly::{StrainEnergy, System};
+use crate::assembly::{Reaction, StrainEnergy, System};
 use crate::error::InputError;
 use crate::nonlinear::{Failure, Kept, Reuse, Trial};
 use crate::observe::State;
@@ -58,7 +58,7 @@ impl Memory {
 }
 
 /// What a file of a checkpoint begins with.
-const MAGIC: &[u8; 8] = b"ancf-cp5";
+const MAGIC: &[u8; 8] = b"ancf-cp6";
 
 impl Checkpoint {
     /// The time that was reached, s.
@@ -213,8 +213,8 @@ impl Words {
     }
 
     fn state(&mut self, state: &State) {
-        let State { t, q, v, a, strain, kinetic, work, dissipated, momentum, angular_momentum, negative_pivots } =
-            state;
+        let State { t, q, v, a, strain, kinetic, work, dissipated, .. } = state;
+        let State { momentum, angular_momentum, reactions, negative_pivots, .. } = state;
         for x in [*t, strain.membrane, strain.bending, *kinetic, *work, *dissipated] {
             self.number(x);
         }
@@ -223,6 +223,12 @@ impl Words {
         }
         for numbers in [q, v, a] {
             self.numbers(numbers);
+        }
+        self.count(reactions.len());
+        for Reaction { point, force, moment } in reactions {
+            for x in [point, force, moment].into_iter().flatten() {
+                self.number(*x);
+            }
         }
         self.count(negative_pivots.map_or(0, |n| n + 1));
     }
@@ -267,8 +273,13 @@ impl<'a> Reader<'a> {
             q: self.numbers()?,
             v: self.numbers()?,
             a: self.numbers()?,
+            reactions: (0..self.count()?).map(|_| self.reaction()).collect::<Option<_>>()?,
             negative_pivots: self.count()?.checked_sub(1),
         })
+    }
+
+    fn reaction(&mut self) -> Option<Reaction> {
+        Some(Reaction { point: self.array()?, force: self.array()?, moment: self.array()? })
     }
 
     fn numbers(&mut self) -> Option<Vec<f64>> {

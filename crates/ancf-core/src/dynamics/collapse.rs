@@ -65,14 +65,19 @@ impl Middles {
     fn look_at(&mut self, model: &Model, q: &[f64]) {
         self.next.clear();
         for (body, tables) in model.bodies().iter().zip(&self.tables) {
+            let count = body.nodal_vectors().len();
             self.next.extend((0..body.grid().elements()).map(|element| {
-                let [mut x, mut y] = [Vector3::zeros(); 2];
-                for (vector, [n_x, n_y]) in body.element_vectors(element).zip(tables) {
-                    let vector = Vector3::from_column_slice(&q[3 * vector..][..3]);
-                    x += *n_x * vector;
-                    y += *n_y * vector;
+                let [mut x, mut y] = [[0.0; 3]; 2];
+                for (node, tables) in body.grid().cell(element).into_iter().zip(tables.chunks_exact(count)) {
+                    let vectors = q[3 * body.vector(node, 0)..][..3 * count].as_chunks::<3>().0;
+                    for (vector, [n_x, n_y]) in vectors.iter().zip(tables) {
+                        for i in 0..3 {
+                            x[i] += n_x * vector[i];
+                            y[i] += n_y * vector[i];
+                        }
+                    }
                 }
-                [x, y]
+                [Vector3::from(x), Vector3::from(y)]
             }));
         }
     }

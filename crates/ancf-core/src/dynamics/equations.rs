@@ -1,6 +1,6 @@
 //! The equations of motion at one time, for every integrator.
 
-use crate::assembly::System;
+use crate::assembly::{Bodies, Reaction, StrainEnergy, System};
 use crate::element::{At, Motion};
 use crate::nonlinear::{Failure, Newton};
 
@@ -12,18 +12,19 @@ pub(super) struct Equations<'a> {
     pub system: &'a mut System,
     pub newton: Newton,
     pub inertia: Inertia,
+    bodies: Bodies,
     work: Vec<f64>,
 }
 
 impl<'a> Equations<'a> {
-    pub fn new(system: &'a mut System, newton: Newton, inertia: Inertia) -> Self {
+    pub fn new(system: &'a mut System, newton: Newton, inertia: Inertia, bodies: Bodies) -> Self {
         let work = vec![0.0; system.coordinates()];
-        Self { system, newton, inertia, work }
+        Self { system, newton, inertia, bodies, work }
     }
 
     /// The force `F`, the loads `Q_e` in it, and the power that damping takes.
     pub fn force(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64], loads: &mut [f64]) -> f64 {
-        let power = self.internal(At { q, start: None, motion: None }, v, force);
+        let (_, power) = self.internal(At::rest(q), v, force);
         self.system.external_force(q, t, loads);
         for (force, load) in force.iter_mut().zip(loads) {
             *force -= *load;
@@ -40,10 +41,10 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// The elastic force and that of damping, and the power that damping takes at the velocities `v`.
-    fn internal(&mut self, at: At<'_>, v: &[f64], force: &mut [f64]) -> f64 {
+    /// The elastic force and that of damping; the strain energy, and the power that damping takes at the velocities `v`.
+    fn internal(&mut self, at: At<'_>, v: &[f64], force: &mut [f64]) -> (StrainEnergy, f64) {
         let motion = self.system.is_damped().then_some(Motion { velocity: v, rate: 0.0, viscosity: 0.0 });
-        self.system.force(At { motion, ..at }, force);
+        let strain = self.system.force(At { motion, ..at }, force);
         let mut power = if motion.is_some() { self.system.strain_rates().power } else { 0.0 };
         if let Some(damping) = self.system.mass_damping() {
             for (i, product) in self.work.iter_mut().enumerate() {
@@ -56,7 +57,7 @@ impl<'a> Equations<'a> {
                 force[i] += drag;
             }
         }
-        power
+        (strain, power)
     }
 
     /// Sets positions, velocities and accelerations of moved supports.
@@ -122,7 +123,7 @@ impl<'a> Equations<'a> {
         let mut force = vec![0.0; mean.q.len()];
         let moves = self.moved().next().is_some();
         if self.system.is_damped() || moves {
-            mean.damping = self.internal(At { q: &mean.q, start: Some(start), motion: None }, &mean.v, &mut force);
+            (_, mean.damping) = self.internal(At { q: &mean.q, start: Some(start), motion: None }, &mean.v, &mut force);
         }
         for (q, start) in mean.q.iter_mut().zip(start) {
             *q = 0.5 * (*q + start);
@@ -134,6 +135,18 @@ impl<'a> Equations<'a> {
             }
             self.add_reactions(&force, mean);
         }
+    }
+
+    /// The strain energy of a state, and what supports exert in it.
+    pub fn reactions(&mut self, at: &Instantaneous) -> (StrainEnergy, Vec<Reaction>) {
+        let mut force = vec![0.0; at.q.len()];
+        let (strain, _) = self.internal(At::rest(&at.q), &at.v, &mut force);
+        self.system.external_force(&at.q, at.t, &mut self.work);
+        for (force, load) in force.iter_mut().zip(&self.work) {
+            *force -= load;
+        }
+        self.inertia.add_product(&at.a, &mut force);
+        (strain, self.system.reactions(&at.q, &force, self.bodies))
     }
 
     /// Adds the forces of moved supports to the external ones.

@@ -30,7 +30,7 @@ mod verlet;
 
 use std::time::Instant;
 
-use crate::assembly::System;
+use crate::assembly::{Bodies, System};
 use crate::error::InputError;
 use crate::nonlinear::{Failure, Newton, Options as NewtonOptions};
 use crate::observe::Observer;
@@ -144,7 +144,8 @@ fn run(
 ) -> Result<(), Failure> {
     let inertia = Inertia::new(system, options.method == (Method::Verlet { lumped: true }))?;
     let newton = Newton::new(system, options.newton());
-    let mut simulation = Simulation::new(Equations::new(system, newton, inertia), options);
+    let bodies = if options.method == Method::Rigid { Bodies::Rigid } else { Bodies::Flexible };
+    let mut simulation = Simulation::new(Equations::new(system, newton, inertia, bodies), options);
     let end = simulation.begin(checkpoint, observer).and_then(|()| simulation.run(observer));
     (*counts, *reached) = (simulation.counts(), simulation.reached());
     end

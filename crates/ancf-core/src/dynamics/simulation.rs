@@ -1,7 +1,10 @@
 //! Steps strung together: outputs, rejected steps, checkpoints.
 
+mod limit;
+
+use crate::assembly::Reaction;
 use crate::nonlinear::Failure;
-use crate::observe::Observer;
+use crate::observe::{Observer, State};
 use crate::report::Counts;
 
 use super::Options;
@@ -11,18 +14,7 @@ use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
 use super::fingerprint::Fingerprint;
 use super::method::{Integrator, Method};
-use super::stability::highest_frequency;
 use super::state::Instantaneous;
-
-/// Explicit steps after which the limit of stability is estimated again.
-const LIMIT_EVERY: usize = 20;
-/// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates. Fixed
-/// ones that are longer are compared with a precise estimate.
-const STABLE: f64 = 0.9;
-/// Change of the squared highest frequency in an iteration at which it is found: for a fixed step that the limit may refuse,
-/// and where the share above covers what is missing.
-const PRECISE: f64 = 1e-6;
-const ROUGH: f64 = 1e-2;
 
 /// A motion while it is computed.
 pub(super) struct Simulation<'a> {
@@ -38,6 +30,8 @@ pub(super) struct Simulation<'a> {
     allowed: Vec<(usize, f64)>,
     /// Times at which steps under error control end, besides outputs: what begins between two steps, no estimate sees.
     kinks: Vec<f64>,
+    /// The last state in which a fixed explicit step was found stable, and the steps up to there.
+    stable: Option<(Instantaneous, usize)>,
     /// What belongs to the state `now` in a checkpoint, when checkpoints are wanted: a step that is being tried has
     /// changed the present ones already.
     accepted: (Controller, Memory, Counts),
@@ -68,6 +62,7 @@ impl<'a> Simulation<'a> {
             error: vec![0.0; n],
             allowed,
             kinks,
+            stable: None,
             accepted: (Controller::new(0.0), Memory::default(), Counts::default()),
             counts: Counts::default(),
             earlier,
@@ -105,7 +100,7 @@ impl<'a> Simulation<'a> {
             Steps::Fixed { step, .. } => step,
             Steps::Controlled(tolerances) => tolerances.first_step.unwrap_or_else(|| self.first_step(tolerances)),
         });
-        self.heed_limit()?;
+        self.heed_limit(observer)?;
         self.accepted = (self.controller, Memory::default(), self.counts());
         if self.options.outputs.first() == Some(&0.0) {
             observer.state(self.now.output(&mut self.equations));
@@ -132,20 +127,18 @@ impl<'a> Simulation<'a> {
             if observer.stop() {
                 return Err(Failure::Stopped);
             }
-            if self.counts.steps.is_multiple_of(LIMIT_EVERY) && self.counts.steps > 0 {
-                self.heed_limit()?;
+            if self.counts.steps.is_multiple_of(limit::EVERY) && self.counts.steps > 0 {
+                self.heed_limit(observer)?;
             }
             match self.options.steps {
                 Steps::Fixed { step, .. } => {
-                    // Steps are counted, so that their ends do not drift with rounding; the last may be shorter.
-                    let steps = (self.options.until / step - 1e-9).ceil().max(1.0) as usize;
-                    let count = self.counts.steps + 1;
-                    self.next.t = if count >= steps { self.options.until } else { count as f64 * step };
-                    self.try_step(observer).inspect_err(|failure| {
-                        if *failure != Failure::Stopped {
-                            self.counts.rejected.count(failure);
+                    if let Err(failure) = self.fixed_step(step, observer) {
+                        if failure == Failure::Stopped {
+                            return Err(failure);
                         }
-                    })?;
+                        self.counts.rejected.count(&failure);
+                        return Err(self.unstable_before(step, observer)?.unwrap_or(failure));
+                    }
                 }
                 Steps::Controlled(tolerances) => {
                     let output = outputs.peek().map_or(self.options.until, |t| t.min(self.options.until));
@@ -158,14 +151,9 @@ impl<'a> Simulation<'a> {
                 }
             }
             self.counts.steps += 1;
+            let mut reactions = None;
             while let Some(t) = outputs.next_if(|t| *t <= self.next.t) {
-                let quintic = self.integrator.order() > 2;
-                let state = if t == self.next.t {
-                    self.next.output(&mut self.equations)
-                } else {
-                    Instantaneous::between(&self.now, &self.next, t, quintic).output(&mut self.equations)
-                };
-                observer.state(state);
+                observer.state(self.output(t, &mut reactions));
             }
             std::mem::swap(&mut self.now, &mut self.next);
             self.middles.accept();
@@ -176,6 +164,27 @@ impl<'a> Simulation<'a> {
             observer.checkpoint(&|states| self.checkpoint().to_bytes(states), false);
         }
         Ok(())
+    }
+
+    /// The output at a time of the step just made. `reactions` are those at its ends, once they are needed.
+    fn output(&mut self, t: f64, reactions: &mut Option<[Vec<Reaction>; 2]>) -> State {
+        let rounding = self.rounding();
+        let Self { equations, integrator, .. } = self;
+        let (now, next) = (&self.now, &self.next);
+        if t == next.t {
+            return next.output(equations);
+        }
+        let mut state = Instantaneous::between(now, next, t, integrator.order() > 2).output(equations);
+        if [now.t, next.t].iter().any(|end| (t - end).abs() <= rounding) {
+            return state;
+        }
+        // Interpolated positions are strained in a way that the motion is not: forces are interpolated themselves.
+        let [from, to] = reactions.get_or_insert_with(|| [now, next].map(|end| equations.reactions(end).1));
+        let share = (t - now.t) / (next.t - now.t);
+        for (reaction, (from, to)) in state.reactions.iter_mut().zip(from.iter().zip(to)) {
+            *reaction = Reaction { point: reaction.point, ..from.towards(to, share) };
+        }
+        state
     }
 
     fn try_step(&mut self, observer: &dyn Observer) -> Result<(), Failure> {
@@ -193,6 +202,14 @@ impl<'a> Simulation<'a> {
         }
         let place = self.middles.collapsed(self.equations.system.model(), &self.next.q);
         place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, t: self.next.t }))
+    }
+
+    fn fixed_step(&mut self, step: f64, observer: &dyn Observer) -> Result<(), Failure> {
+        // Steps are counted, so that their ends do not drift with rounding; the last may be shorter.
+        let steps = (self.options.until / step - 1e-9).ceil().max(1.0) as usize;
+        let count = self.counts.steps + 1;
+        self.next.t = if count >= steps { self.options.until } else { count as f64 * step };
+        self.try_step(observer)
     }
 
     /// The next kink, if any.
@@ -266,39 +283,6 @@ impl<'a> Simulation<'a> {
             step = step.min(distance / self.now.v[i].abs()).min((2.0 * distance / self.now.a[i].abs()).sqrt());
         }
         step
-    }
-
-    /// The longest stable step of an explicit method in the present state.
-    ///
-    /// # Source
-    ///
-    /// Belytschko, Liu and Moran, Nonlinear Finite Elements for Continua and Structures (2000), (6.2.21) for damping.
-    fn limit(&mut self, precision: f64) -> Option<f64> {
-        let limit = self.integrator.explicit_limit()?;
-        let omega = highest_frequency(&mut self.equations, self.now.t, &self.now.q, precision);
-        let damping = self.equations.system.model().bodies().iter().map(|body| body.plate().material.damping());
-        let ratio = damping.map(|d| 0.5 * (d.viscosity * omega + d.mass / omega)).fold(0.0, f64::max);
-        Some(limit / omega * ((1.0 + ratio * ratio).sqrt() - ratio))
-    }
-
-    /// Refuses a fixed explicit step that is not stable in the present state, and holds controlled ones below the limit.
-    ///
-    /// Error control alone would not: it sees positions only, and where the tolerance is loose, what grows in the other
-    /// coordinates has made the model another one before positions show it.
-    fn heed_limit(&mut self) -> Result<(), Failure> {
-        match self.options.steps {
-            Steps::Fixed { force: true, .. } => {}
-            Steps::Fixed { step, .. } => {
-                let near = self.limit(ROUGH).is_some_and(|limit| step > STABLE * limit);
-                if near && let Some(limit) = self.limit(PRECISE).filter(|limit| step > *limit) {
-                    return Err(Failure::StepAboveLimit { t: self.now.t, step, limit });
-                }
-            }
-            Steps::Controlled(_) => {
-                self.controller.limit = self.limit(ROUGH).map_or(f64::INFINITY, |limit| STABLE * limit);
-            }
-        }
-        Ok(())
     }
 
     /// What is needed to go on from the last accepted step.

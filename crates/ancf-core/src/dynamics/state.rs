@@ -38,7 +38,7 @@ impl Instantaneous {
     pub fn output(&self, equations: &mut Equations<'_>) -> State {
         let (kinetic, momentum, angular_momentum) =
             equations.system.motion(equations.inertia.matrix(), &self.q, &self.v);
-        let strain = equations.system.internal_force(&self.q, &mut vec![0.0; self.q.len()]);
+        let (strain, reactions) = equations.reactions(self);
         State {
             t: self.t,
             q: self.q.clone(),
@@ -50,6 +50,7 @@ impl Instantaneous {
             dissipated: self.dissipated,
             momentum,
             angular_momentum,
+            reactions,
             negative_pivots: self.negative_pivots,
         }
     }

@@ -47,10 +47,10 @@ fn replace_all<T: Number, const M: usize, const N: usize>(vectors: &mut [[T; M];
     let kinds = N / 4;
     for kind in 0..kinds {
         for i in 0..M {
-            let parts = by([0, 1, 2, 3].map(|corner| vectors[corner * kinds + kind][i]));
-            for corner in 0..4 {
-                vectors[corner * kinds + kind][i] = parts[corner];
-            }
+            // Spelled out: a closure over the corners is called where `T` is a register.
+            let [a, b, c, d] = [kind, kinds + kind, 2 * kinds + kind, 3 * kinds + kind];
+            let parts = by([vectors[a][i], vectors[b][i], vectors[c][i], vectors[d][i]]);
+            [vectors[a][i], vectors[b][i], vectors[c][i], vectors[d][i]] = parts;
         }
     }
 }

@@ -9,14 +9,18 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::prelude::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, MatRef, Par};
+use pulp::{Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::tree::Run;
+use crate::lanes::{add, arch};
 
 /// Columns that are eliminated at once.
 pub(super) const BLOCK: usize = 128;
 /// Width of the columns of tiles in which products are formed; of the tiles on the diagonal half is of no use.
-const TILE: usize = 48;
+const TILE: usize = 24;
+/// The registers by which updates are added: two of four numbers and one number are the rows of a node with three vectors.
+const RUN: usize = 4;
 /// Sides of the tiles of fronts whose tiles are shared among threads.
 const SHARED_TILE: usize = 192;
 
@@ -121,21 +125,40 @@ fn row_tiles(matrix: MatMut<'_, f64>) -> Vec<MatMut<'_, f64>> {
 /// Adds the update of a child, (below, below), to the columns `columns` of a front, of which `target` holds the rows
 /// from `top` on, column by column; `runs` are the places of the child's rows.
 pub(super) fn extend_add(target: &mut [f64], top: usize, columns: Range<usize>, child: &[f64], runs: &[Run]) {
-    let height = target.len() / columns.len();
-    let below = runs.last().map_or(0, |run| (run.from + run.length) as usize);
-    for (k, run) in runs.iter().enumerate() {
-        let (from, to) = (run.from as usize, run.to as usize);
-        let first = to.max(columns.start);
-        for column in first..columns.end.min(to + run.length as usize) {
-            let own = from + column - to;
-            let target = &mut target[(column - columns.start) * height..][..height];
-            let child = &child[own * below..][..below];
-            for run in &runs[k..] {
-                let start = own.max(run.from as usize);
-                let end = (run.from + run.length) as usize;
-                let place = run.to as usize + start - run.from as usize - top;
-                let child = &child[start..end];
-                target[place..][..child.len()].iter_mut().zip(child).for_each(|(sum, value)| *sum += value);
+    arch(RUN).dispatch(ExtendAdd { target, top, columns, child, runs });
+}
+
+/// The updates of a child to a front.
+struct ExtendAdd<'a> {
+    target: &'a mut [f64],
+    top: usize,
+    columns: Range<usize>,
+    child: &'a [f64],
+    runs: &'a [Run],
+}
+
+impl WithSimd for ExtendAdd<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { target, top, columns, child, runs } = self;
+        let height = target.len() / columns.len();
+        let below = runs.last().map_or(0, |run| (run.from + run.length) as usize);
+        for (k, run) in runs.iter().enumerate() {
+            let (from, to) = (run.from as usize, run.to as usize);
+            let first = to.max(columns.start);
+            for column in first..columns.end.min(to + run.length as usize) {
+                let own = from + column - to;
+                let target = &mut target[(column - columns.start) * height..][..height];
+                let child = &child[own * below..][..below];
+                for run in &runs[k..] {
+                    let start = own.max(run.from as usize);
+                    let end = (run.from + run.length) as usize;
+                    let place = run.to as usize + start - run.from as usize - top;
+                    let child = &child[start..end];
+                    add(simd, &mut target[place..][..child.len()], child);
+                }
             }
         }
     }

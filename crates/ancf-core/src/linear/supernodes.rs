@@ -62,8 +62,8 @@ impl Supernodes {
             let size = (k + kp) * (k + kp + 1) / 2 + (k + kp) * mp;
             let most = match k + kp {
                 0..=16 => 0.5,
-                17..=48 => 0.25,
-                49..=96 => 0.1,
+                17..=48 => 0.1,
+                49..=96 => 0.05,
                 _ => 0.03,
             };
             if zeros as f64 <= most * size as f64 {

@@ -1,6 +1,6 @@
 //! A path of equilibria: the point it has reached and what is known there.
 
-use crate::assembly::System;
+use crate::assembly::{Bodies, System};
 use crate::element::Want;
 use crate::nonlinear::{Failure, Newton, Options as NewtonOptions};
 use crate::observe::{Observer, State};
@@ -154,7 +154,12 @@ impl<'a> Path<'a> {
         self.told = Some(self.at.load.t);
         let Point { load, ref q, negative_pivots, .. } = self.at;
         let zeros = vec![0.0; q.len()];
-        let strain = self.system.internal_force(q, &mut zeros.clone());
+        let [mut residual, mut external] = [zeros.clone(), zeros.clone()];
+        let strain = self.system.internal_force(q, &mut residual);
+        self.system.external_force(q, load.t, &mut external);
+        for (residual, external) in residual.iter_mut().zip(&external) {
+            *residual -= external;
+        }
         observer.state(State {
             t: load.t,
             q: q.clone(),
@@ -166,6 +171,7 @@ impl<'a> Path<'a> {
             dissipated: 0.0,
             momentum: [0.0; 3],
             angular_momentum: [0.0; 3],
+            reactions: self.system.reactions(q, &residual, Bodies::Flexible),
             negative_pivots: Some(negative_pivots),
         });
         observer.reached(load.t);

@@ -24,7 +24,7 @@ fn global_forces_and_tangents_are_sums_over_elements() {
     model.clamp(first, "edge:x0".parse().unwrap()).unwrap();
     pin(&mut model, second, "corner:x0y0");
     let fix = Fix { vector: NodalVector::RX, component: Some(1) };
-    model.fix(first, Place::Point([0.3, 0.25]), fix).unwrap();
+    model.fix(first, Place::Point([0.3, 0.25]), &[fix]).unwrap();
     let q = random_state(&model, 0.05, &mut Random(3));
 
     let n = q.len();

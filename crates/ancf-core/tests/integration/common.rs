@@ -43,7 +43,7 @@ pub fn system(model: Model) -> System {
 
 /// Fixes the positions, but not the gradients, at a place.
 pub fn pin(model: &mut Model, body: BodyId, place: &str) {
-    model.fix(body, place.parse().unwrap(), Fix { vector: NodalVector::R, component: None }).unwrap();
+    model.fix(body, place.parse().unwrap(), &[Fix { vector: NodalVector::R, component: None }]).unwrap();
 }
 
 /// A line load on an edge, N/m.

@@ -131,7 +131,7 @@ fn hinged_roof(thickness: f64, control: Control) -> (Run, Vec<[f64; 2]>, Vec<usi
     let body = model.add_body("roof", &surface, [8, 8], plate).unwrap();
     let mut fix = |place: &str, vector, components: &[usize]| {
         for component in components {
-            model.fix(body, place.parse().unwrap(), Fix { vector, component: Some(*component) }).unwrap();
+            model.fix(body, place.parse().unwrap(), &[Fix { vector, component: Some(*component) }]).unwrap();
         }
     };
     use NodalVector::{R, RX, RY};
@@ -197,7 +197,7 @@ fn a_compressed_strip_buckles_at_eulers_load() {
     model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
     let held = [(NodalVector::R, 1), (NodalVector::R, 2), (NodalVector::RX, 1), (NodalVector::RX, 2)];
     for (vector, component) in held {
-        model.fix(body, "edge:x1".parse().unwrap(), Fix { vector, component: Some(component) }).unwrap();
+        model.fix(body, "edge:x1".parse().unwrap(), &[Fix { vector, component: Some(component) }]).unwrap();
     }
     let critical = 4.0 * PI * PI * young * thickness.powi(3) / 12.0 / (length * length);
     add_ramp(&mut model, line(body, "edge:x1", [-1.05 * critical, 0.0, 0.0]));

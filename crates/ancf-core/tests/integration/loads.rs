@@ -127,7 +127,7 @@ fn pressure_does_the_work_of_the_volume() {
     {
         let place = format!("edge:{edge}").parse().unwrap();
         pin(&mut model, body, &format!("edge:{edge}"));
-        model.fix(body, place, Fix { vector: along, component: None }).unwrap();
+        model.fix(body, place, &[Fix { vector: along, component: None }]).unwrap();
     }
     let pressure = 3.0;
     add_constant(&mut model, LoadKind::Pressure { body, pressure });

@@ -111,7 +111,7 @@ fn an_end_moment_rolls_a_strip_into_a_circle() {
     model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
     let out_of_plane = [(NodalVector::R, 1), (NodalVector::RX, 1), (NodalVector::RY, 0), (NodalVector::RY, 2)];
     for (vector, component) in out_of_plane {
-        model.fix(body, Place::All, Fix { vector, component: Some(component) }).unwrap();
+        model.fix(body, Place::All, &[Fix { vector, component: Some(component) }]).unwrap();
     }
     let edge = Model::edge_at("edge:x1".parse().unwrap()).unwrap();
     let per_length = 2.0 * PI * young * thickness.powi(3) / 12.0 / length;

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -17,6 +16,7 @@ from ancf.result import Result
 from ancf.scene import Scene
 from ancf.stage import Stage
 from ancf.sweep import Variant
+from ancf.text import plain_text
 
 _STYLES: dict[str, dict[str, Any]] = {
     name: {"color": colour, "marker": marker, "linewidth": 1.6, "markersize": 6}
@@ -93,7 +93,6 @@ def solve_shapes(number: int) -> dict[str, Result]:
     for name in (THIN, SOLID):
         document = Variant.of(pendulum(), **MODELS[name], divisions=[number, number], outputs=outputs).scene
         result = Scene.of(document).solve(throw=False)
-        assert isinstance(result, Result)
         results[name] = result
     return results
 
@@ -115,7 +114,7 @@ def draw_paths(results: Mapping[str, Result]) -> Figure:
 
 def draw_shapes(results: Mapping[str, Result]) -> Figure:
     """Draw Fig. 6: the deformed shapes at three times."""
-    with mpl.rc_context({"text.parse_math": False}):
+    with plain_text():
         figure = Figure(figsize=(15, 9), dpi=100, layout="constrained", facecolor="white")
         parts = iter(figure.subfigures(len(results), 3, squeeze=False).flat)
         for name, result in results.items():
@@ -127,7 +126,7 @@ def draw_shapes(results: Mapping[str, Result]) -> Figure:
 
 
 def _panels(number: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
-    with mpl.rc_context({"text.parse_math": False}):
+    with plain_text():
         figure = Figure(figsize=size, dpi=110, layout="constrained", facecolor="white")
         return figure, [figure.add_subplot(1, number, index + 1) for index in range(number)]
 

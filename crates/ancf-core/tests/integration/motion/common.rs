@@ -34,7 +34,7 @@ pub fn pendulum_of(divisions: usize, thickness: f64, material: Material) -> Mode
 /// Pins a plate at a corner and lets it fall.
 pub fn hang((mut model, body): (Model, BodyId)) -> Model {
     let fix = Fix { vector: ancf_core::element::NodalVector::R, component: None };
-    model.fix(body, "corner:x0y0".parse().unwrap(), fix).unwrap();
+    model.fix(body, "corner:x0y0".parse().unwrap(), &[fix]).unwrap();
     gravity(&mut model, -9.81);
     model
 }

@@ -23,9 +23,13 @@ fn explicit_steps_above_the_limit_are_refused() {
     let Failure::StepAboveLimit { step, limit, .. } = failure(run.outcome) else { panic!() };
     assert_eq!(step, 0.1);
     // As the plate is drawn out it stiffens, and the limit falls: 0.8 of that at rest is refused on the way, 0.7 holds.
-    let (_, run) = simulate(model.clone(), &options(Method::Verlet { lumped: false }, Steps::fixed(0.8 * limit), 0.3));
+    let (states, run) =
+        simulate(model.clone(), &options(Method::Verlet { lumped: false }, Steps::fixed(0.8 * limit), 0.3));
     let Failure::StepAboveLimit { t, limit: later, .. } = failure(run.outcome) else { panic!() };
-    assert!(t > 0.2 && (0.7..0.8).contains(&(later / limit)), "{t} {later} {limit}");
+    // That of the first such state, from which on nothing is kept.
+    assert!(t > 0.2 && (0.79..0.8).contains(&(later / limit)), "{t} {later} {limit}");
+    assert_eq!((states.last().unwrap().t, run.reached), (t, t));
+    assert!(states.is_sorted_by(|a, b| a.t < b.t));
     end(model.clone(), &options(Method::Verlet { lumped: false }, Steps::fixed(0.7 * limit), 0.3));
     let forced = Steps::Fixed { step: 1.5 * limit, force: true };
     let (_, run) = simulate(model.clone(), &options(Method::Verlet { lumped: false }, forced, 3.0));
@@ -57,6 +61,10 @@ fn a_collapsing_element_ends_a_run() {
             match (&failure, steps) {
                 (Failure::Collapsed { place, .. }, Steps::Fixed { .. }) => {
                     assert!(place.ends_with("of body \"plate\""), "{place}");
+                }
+                // What is pressed together is so stiff that before it collapses explicit steps are not stable any more.
+                (Failure::StepAboveLimit { limit, .. }, Steps::Fixed { .. }) if !method.is_implicit() => {
+                    assert!(*limit < 1e-4);
                 }
                 (Failure::StepTooSmall { .. }, Steps::Controlled(_)) => (),
                 _ => panic!("{} {steps:?}: {failure}", method.name()),
@@ -107,7 +115,7 @@ fn contradictory_motions_are_refused() {
     let before = model.clone();
     let error = model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(3.0)).unwrap_err();
     assert_eq!(error.argument, "at");
-    assert!(model.fix(body, "corner:x0y1".parse().unwrap(), r[0]).is_err());
+    assert!(model.fix(body, "corner:x0y1".parse().unwrap(), &[r[0]]).is_err());
     assert_eq!((model.fixed(), model.moved()), (before.fixed(), before.moved()), "nothing is changed by an error");
     model.move_support(body, "edge:y0".parse().unwrap(), &r, shaken(2.0)).unwrap();
     let late = SupportMotion {

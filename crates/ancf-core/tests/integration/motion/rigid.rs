@@ -21,7 +21,7 @@ fn spin(model: &Model, omega: Vector3<f64>) -> Vec<f64> {
 
 fn hold(model: &mut Model, place: &str) {
     let body = model.find("plate").unwrap();
-    model.fix(body, place.parse().unwrap(), Fix { vector: NodalVector::R, component: None }).unwrap();
+    model.fix(body, place.parse().unwrap(), &[Fix { vector: NodalVector::R, component: None }]).unwrap();
 }
 
 /// The axis of a free symmetric top turns about the angular momentum with |L| / I_1.
@@ -114,7 +114,7 @@ fn errors_shrink_with_the_fifth_power_of_the_step() {
 fn other_supports_are_refused() {
     let (mut model, body) = plate(1, SIDE, 0.01, steel());
     let fix = Fix { vector: NodalVector::R, component: Some(2) };
-    model.fix(body, "edge:x0".parse().unwrap(), fix).unwrap();
+    model.fix(body, "edge:x0".parse().unwrap(), &[fix]).unwrap();
     let system = ancf_core::assembly::System::new(std::sync::Arc::new(model)).unwrap();
     let refused = options(Method::Rigid, Steps::fixed(1e-3), 1.0).validate(&system).unwrap_err();
     assert_eq!(refused.argument, "method");
