@@ -165,6 +165,18 @@ def test_a_damped_strip_on_a_shaken_clamp_keeps_the_balance_of_momentum() -> Non
         np.testing.assert_allclose(given[2:-1], expected[1:], rtol=0, atol=1e-3 * np.abs(expected).max())
 
 
+@pytest.mark.parametrize("damping", [{"mass_damping": 30.0}, {"viscosity": 1e-3}])
+def test_damping_acts_on_what_a_support_moves_from_the_start(damping: dict[str, float]) -> None:
+    """Reference: dP/dt + c P = R at t = 0, where the support moves and the body does not, by one difference."""
+    clamp = ancf.Support(at="edge:x0", clamp=True, shake=ancf.Shake(amplitude=(0.0, 0.01, 0.0), frequency=5.0))
+    step = 1e-7
+    held = model(strip(RUBBER.model_copy(update=damping)), clamp)
+    result = ancf.simulate(held, until=step, step=step, every=step, method="esdirk")
+    (reaction,) = result.reactions
+    expected = np.diff(result.momentum, axis=0) / step + damping.get("mass_damping", 0.0) * result.momentum[:1]
+    np.testing.assert_allclose(reaction.force[:1], expected, rtol=0, atol=1e-3 * np.abs(expected).max())
+
+
 def test_what_two_supports_hold_belongs_to_the_first() -> None:
     load = ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, -100.0))
     edge, corner = ancf.Support(at="edge:x0", clamp=True), ancf.Support(at="corner:x0y0", fix=["r"])

@@ -65,7 +65,9 @@ def _plot_modes(result: ModalResult, title: str, count: int) -> Figure:
     rows = -(-len(shown) // columns)
     figure = Figure(figsize=(4.2 * columns, 3.6 * rows + 0.6), dpi=130, layout="constrained")
     figure.suptitle(title, fontsize="x-large")
-    parts = figure.subfigures(rows, columns, squeeze=False).ravel()
+    # Labels in space are not laid out: those of the last column need room beside it.
+    widths = [*[1.0] * columns, 0.08]
+    parts = figure.subfigures(rows, columns + 1, squeeze=False, width_ratios=widths)[:, :columns].ravel()
     for part, mode in zip(parts, shown, strict=False):
         part.suptitle(mode_name(result, mode))
         q = result.oscillation(mode, [np.pi / 2])

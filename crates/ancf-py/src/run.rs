@@ -85,7 +85,7 @@ impl Run {
         match self.end.as_ref().map(|end| &end.outcome) {
             Some(Outcome::Ok) => "",
             Some(Outcome::Failed(failure)) => failure.advice(),
-            Some(Outcome::Interrupted) | None => "run it again to go on",
+            Some(Outcome::Interrupted) | None => "run it again; a motion with a checkpoint goes on from there",
         }
     }
 

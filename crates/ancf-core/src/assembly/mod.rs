@@ -24,7 +24,6 @@ use std::time::Instant;
 
 use crate::element::ElementBlock;
 use crate::linear::{Factorization, LinearError, SymmetricMatrix};
-use crate::mesh::Place;
 use crate::model::Model;
 
 use loads::Loads;
@@ -155,19 +154,6 @@ impl System {
 
     /// Says which coordinate an equation is for.
     pub fn describe(&self, equation: usize) -> String {
-        let coordinate = self.numbering.coordinate[equation];
-        let vector = coordinate / 3;
-        for body in self.model.bodies() {
-            let count = body.nodal_vectors().len();
-            let first = body.vector(0, 0);
-            if (first..first + body.grid().nodes() * count).contains(&vector) {
-                let node = (vector - first) / count;
-                let name = body.nodal_vectors()[(vector - first) % count].name();
-                let component = ["x", "y", "z"][coordinate % 3];
-                let at = Place::Point(body.grid().parameters(node));
-                return format!("{name}.{component} at {at} of body \"{}\"", body.name());
-            }
-        }
-        format!("coordinate {coordinate}")
+        self.model.describe(self.numbering.coordinate[equation])
     }
 }

@@ -75,12 +75,14 @@ impl<'a> Equations<'a> {
         self.system.model().moved().iter().map(|moved| moved.coordinate)
     }
 
-    /// The accelerations of a state whose positions and velocities are known, its loads and the power of damping.
+    /// The accelerations of a state whose free positions and velocities are known, its loads and the power of damping; moved
+    /// supports are set.
     ///
     /// # Errors
     ///
     /// The forces must be finite.
     pub fn accelerate(&mut self, at: &mut Instantaneous) -> Result<(), Failure> {
+        self.prescribe(at);
         let mut force = vec![0.0; at.q.len()];
         at.damping = self.force(at.t, &at.q, &at.v, &mut force, &mut at.external);
         if !force.iter().all(|f| f.is_finite()) {
@@ -89,7 +91,6 @@ impl<'a> Equations<'a> {
         for (right, force) in self.work.iter_mut().zip(&force) {
             *right = -force;
         }
-        self.prescribe(at);
         if self.moved().next().is_some() {
             // Free coordinates see the inertia of moved ones as a force.
             let mut moved = vec![0.0; force.len()];

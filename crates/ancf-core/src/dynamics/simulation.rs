@@ -100,12 +100,12 @@ impl<'a> Simulation<'a> {
             Steps::Fixed { step, .. } => step,
             Steps::Controlled(tolerances) => tolerances.first_step.unwrap_or_else(|| self.first_step(tolerances)),
         });
-        self.heed_limit(observer)?;
+        let heeded = self.heed_limit(observer);
         self.accepted = (self.controller, Memory::default(), self.counts());
         if self.options.outputs.first() == Some(&0.0) {
             observer.state(self.now.output(&mut self.equations));
         }
-        Ok(())
+        heeded
     }
 
     /// Integrates to the end.

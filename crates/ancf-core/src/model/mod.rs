@@ -127,6 +127,16 @@ impl Model {
         &self.fixed
     }
 
+    /// Says which coordinate it is: component, place and body.
+    pub(crate) fn describe(&self, coordinate: usize) -> String {
+        let vector = coordinate / 3;
+        let body = self.bodies.iter().rfind(|body| body.vector(0, 0) <= vector).expect("a coordinate of a body");
+        let (own, count) = (vector - body.vector(0, 0), body.nodal_vectors().len());
+        let name = body.nodal_vectors()[own % count].name();
+        let at = Place::Point(body.grid().parameters(own / count));
+        format!("{name}.{} at {at} of body \"{}\"", ["x", "y", "z"][coordinate % 3], body.name())
+    }
+
     /// Adds a load.
     ///
     /// # Errors

@@ -166,7 +166,7 @@ impl Model {
     /// Two supports may hold the same coordinate only if they move it in the same way.
     fn check_support(&self, coordinate: usize, motion: Option<usize>) -> Result<(), InputError> {
         let known = self.moved.iter().find(|moved| moved.coordinate == coordinate).map(|moved| moved.motion);
-        let value = format!("coordinate {coordinate}, which another support moves differently");
+        let value = format!("{}, which another support moves differently", self.describe(coordinate));
         let valid = !self.fixed[coordinate] || known == motion;
         InputError::check("at", value, valid, "one motion of each coordinate")
     }

@@ -196,7 +196,7 @@ impl Failure {
                  units, refine the mesh where it bends most, add damping"
             }
             Self::TooLarge => "a coarser mesh",
-            Self::Stopped => "run it again to go on",
+            Self::Stopped => "run it again; a motion with a checkpoint goes on from there",
         }
     }
 
