@@ -135,14 +135,15 @@ def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Tim
                 break
     found.sort(key=lambda timing: timing.pilot.seconds)
     found = [t for explicit in (False, True) for t in [t for t in found if t.stepping.explicit is explicit][:_KEPT]]
-    found.sort(key=lambda timing: timing.pilot.seconds)
-    if found and not found[0].stepping.explicit:
-        kept = replace(found[0].stepping, reuse=True)
-        pilot = pilots.run(Choice(rung, kept), found[0].pilot.seconds)
-        if pilot.ok and pilot.seconds < 0.9 * found[0].pilot.seconds:
+    implicit = min((t for t in found if not t.stepping.explicit), key=lambda t: t.pilot.seconds, default=None)
+    if implicit is not None:
+        kept = replace(implicit.stepping, reuse=True)
+        pilot = pilots.run(Choice(rung, kept), implicit.pilot.seconds)
+        if pilot.ok and pilot.seconds < 0.9 * implicit.pilot.seconds:
             error = distance(pilot.values, exact, scale)
             if error <= SHARE * tol:
-                found.insert(0, Timing(kept, error, pilot))
+                found.append(Timing(kept, error, pilot))
+    found.sort(key=lambda timing: timing.pilot.seconds)
     return found
 
 
