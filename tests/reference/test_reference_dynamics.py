@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from scipy.sparse.linalg import eigsh
 
 from ancf.reference import (
     EnergyMomentum,
@@ -17,6 +18,7 @@ from ancf.reference import (
     Verlet,
     simulate,
 )
+from ancf.reference.elements import ElementKind
 from ancf.reference.thin import MembraneRule
 
 METHODS: list[Method] = [
@@ -48,11 +50,13 @@ def test_special_cases() -> None:
     assert GeneralizedAlpha.generalized_alpha(1.0) == GeneralizedAlpha(0.5, 0.5, 0.25, 0.5)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_free_fall(method: Method) -> None:
+@pytest.mark.parametrize(("method", "lumped"), [*((method, False) for method in METHODS), (Verlet(), True)])
+def test_free_fall(method: Method, lumped: bool) -> None:
     """An unsupported plate falls as a rigid body from the first step on."""
     mesh = RectangleMesh((0.3, 0.3), (2, 2))
     model = Model(mesh, thickness=0.01, E=1e5, nu=0.3, density=7810)
+    if lumped:
+        model.lump_mass()
     model.add_gravity([0, 0, -9.81])
     motion = simulate(model, 0.05, 0.01, method)
     fall = (motion.q - model.reference).reshape(6, -1, 3, 3)
@@ -147,3 +151,23 @@ def test_frequencies_of_a_free_square(membrane: MembraneRule) -> None:
     D = h**3 / (12 * (1 - 0.3**2))
     np.testing.assert_allclose(squares[:3], 0, atol=1e-10 * squares[3] + 1e-12)
     assert np.sqrt(squares[3] * h / D) == pytest.approx(13.468, rel=5e-3)
+
+
+@pytest.mark.parametrize("element", ["thin36", "thin48"])
+def test_the_lumped_frequency_converges_to_the_consistent_one(element: ElementKind) -> None:
+    """Of a plate clamped at an edge: halved elements divide the difference by four."""
+    differences = []
+    for n in (4, 8, 16):
+        model = Model(RectangleMesh((1.0, 1.0), (n, n)), thickness=0.01, E=1.0, nu=0.3, density=1.0, element=element)
+        model.clamp("edge:x0")
+        bending = model.free[model.free % 3 == 2]
+        K = model.tangent(model.reference)[bending][:, bending]
+        consistent = model.mass
+        model.lump_mass()
+        lowest, lumped = (
+            np.sqrt(eigsh(K, 1, M[bending][:, bending], sigma=0, return_eigenvectors=False)[0])
+            for M in (consistent, model.mass)
+        )
+        differences.append(abs(lumped / lowest - 1))
+    for coarse, fine in pairwise(differences):
+        assert coarse / fine == pytest.approx(4, rel=0.1)

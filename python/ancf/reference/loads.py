@@ -47,13 +47,8 @@ class Load:
     history: History
 
     def factor(self, t: float) -> float:
-        """Factor of the load at the time, or load factor, t; a table is linear between its rows, constant outside."""
-        if self.history == "constant":
-            return 1.0
-        if self.history == "ramp":
-            return t
-        times, factors = np.array(self.history, dtype=np.float64).T
-        return float(np.interp(t, times, factors))
+        """Factor of the load at the time, or load factor, t."""
+        return factor(self.history, t)
 
     def force(self, e: FloatArray) -> FloatArray:
         """Nodal forces of each point at factor 1, shape (p, a, 3), for nodal coordinates e of (elements, a, 3)."""
@@ -79,8 +74,18 @@ class Load:
         return einsum("pva,pai->pvi", self.table[:, 1:], e[self.cells])
 
 
+def factor(history: History, t: float) -> float:
+    """Factor of a history at the time, or load factor, t; a table is linear between its rows, constant outside."""
+    if history == "constant":
+        return 1.0
+    if history == "ramp":
+        return t
+    times, factors = np.array(history, dtype=np.float64).T
+    return float(np.interp(t, times, factors))
+
+
 def dead(force: ArrayLike) -> Density:
-    """Constant force on dr: per point (N), length (N/m) or mass (N/kg)."""
+    """Constant force on dr: per point (N) or length (N/m)."""
 
     def density(vectors: NDArray[Any]) -> NDArray[Any]:
         points, further, _ = vectors.shape

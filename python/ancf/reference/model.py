@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import FloatArray, IndexArray, einsum
 from .elements import NODAL_VECTORS, ElementKind, make
-from .loads import Density, History, Load, dead, edge_moment, pressure
+from .loads import Density, History, Load, dead, edge_moment, factor, pressure
 from .material import Material
 from .mesh import At, Points, RectangleMesh
 from .quadrature import gauss, square
@@ -77,7 +77,7 @@ class Model:
         self._fixed = np.zeros(self.coordinates, dtype=np.bool_)
         self._supports: list[tuple[IndexArray, IndexArray]] = []
         self._loads: list[Load] = []
-        self._lumped = False
+        self._gravity: list[tuple[FloatArray, History]] = []
 
     @property
     def coordinates(self) -> int:
@@ -97,16 +97,12 @@ class Model:
         return scale.ravel()
 
     def lump_mass(self) -> None:
-        """Make the mass matrix diagonal, scaled to the mass of the body; Hinton, Rock and Zienkiewicz (1976).
-
-        Gravity that is added afterwards acts on it: on the positions alone.
-        """
+        """Make the mass matrix diagonal, scaled to the mass of the body; Hinton, Rock and Zienkiewicz (1976)."""
         along = np.zeros_like(self._nodal(self.reference))
         along[:, 0, 0] = 1
         translation, diagonal = along.ravel(), self.mass.diagonal()
         scale = translation @ (self.mass @ translation) / (translation @ diagonal)
         self.mass = sp.diags_array(scale * diagonal).tocsc()
-        self._lumped = True
 
     def fix(self, at: At, coordinates: Sequence[str]) -> None:
         """Fix vectors ("r", "r_x", ...) or components ("r.x", "r_y.z", ...) of the nodes at a place."""
@@ -125,24 +121,10 @@ class Model:
         self.fix(at, self.vectors)
 
     def add_gravity(self, acceleration: ArrayLike, history: History = "constant") -> None:
-        """Gravity: a force rho g per volume, or on lumped masses; acceleration g in m/s2."""
-        if self._lumped:
-            self._add_weights(acceleration, history)
-            return
-        N, mass = self.element.mass_points()
-        elements, samples = mass.shape
-        cells = np.repeat(np.arange(elements), samples)
-        table = np.tile(N[:, None], (elements, 1, 1))
-        self._loads.append(Load(cells, table, mass.ravel(), dead(acceleration), False, history))
-
-    def _add_weights(self, acceleration: ArrayLike, history: History) -> None:
-        """Gravity on the lumped masses of the positions: a force at every node, from one of the cells around it."""
-        nodes, first = np.unique(self.mesh.cells, return_index=True)
-        cells, corners = np.unravel_index(first, self.mesh.cells.shape)
-        table = np.zeros((len(nodes), 1, self._index.shape[1]))
-        table[np.arange(len(nodes)), 0, corners * len(self.vectors)] = 1
-        mass = self._nodal(self.mass.diagonal())[nodes, 0, 0]
-        self._loads.append(Load(cells, table, mass, dead(acceleration), False, history))
+        """Gravity, acceleration g in m/s2: the force M a that lets every point fall with it, M consistent or lumped."""
+        field = np.zeros_like(self._nodal(self.reference))
+        field[:, 0] = acceleration
+        self._gravity.append((field.ravel(), history))
 
     def add_force(self, at: tuple[float, float], force: ArrayLike, history: History = "constant") -> None:
         """Add a dead force (N) at the material point (x, y)."""
@@ -196,9 +178,10 @@ class Model:
     def external_force(self, q: FloatArray, t: float) -> FloatArray:
         """Generalised forces Q_e of the loads at the time, or load factor, t, shape (n,)."""
         e = self._local(q)
+        gravity = sum((factor(history, t) * field for field, history in self._gravity), np.zeros(self.coordinates))
         return sum(
             (load.factor(t) * self._assemble_vector(self._index[load.cells], load.force(e)) for load in self._loads),
-            np.zeros(self.coordinates),
+            np.asarray(self.mass @ gravity),
         )
 
     def reactions(self, q: FloatArray, t: float, a: FloatArray | None = None) -> list[Reaction]:

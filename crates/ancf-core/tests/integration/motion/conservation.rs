@@ -7,7 +7,7 @@ use ancf_core::assembly::System;
 use ancf_core::dynamics::{self, Checkpoint, Method, Options, Steps};
 use ancf_core::element::{Kind, NodalVector};
 use ancf_core::mesh::Surface;
-use ancf_core::model::{Course, Fix, Model, Plate, SupportMotion};
+use ancf_core::model::{Course, Fix, History, Load, LoadKind, Model, Plate, SupportMotion};
 use ancf_core::observe::{Observer, State};
 use ancf_core::report::{Outcome, Run};
 use ancf_core::{Damping, Material};
@@ -290,4 +290,33 @@ fn reuse_saves_factorisations() {
     assert!(super::common::distance(&model, &every, &kept) < 1e-9);
     println!("{counts:?}\n{fewer:?}");
     assert!(3 * fewer.factorizations < counts.factorizations, "{fewer:?} {counts:?}");
+}
+
+/// A free body with a lumped mass falls as it is: every node by `g t^2 / 2`, its gradients stay, nothing is strained, and
+/// its momentum is that of its whole mass.
+#[test]
+fn a_body_of_lumped_mass_falls_rigidly() {
+    let (g, until) = ([1.0, 2.0, -9.81], 0.05);
+    for kind in Kind::ALL {
+        let shapes = [Surface::rectangle([0.3, 0.2]).unwrap(), Surface::cylinder(0.3, [0.0, 1.0], [0.0, 0.2]).unwrap()];
+        for surface in shapes {
+            let mut model = Model::new();
+            let plate = Plate { material: rubber(), thickness: 0.01, element: kind, membrane: None, curvature: None };
+            model.add_body("body", &surface, [6, 4], plate).unwrap();
+            let system = System::new(Arc::new(model.clone())).unwrap();
+            let mass: f64 = system.positions().map(|a| system.weight()[a]).sum();
+            model.add_load(Load { kind: LoadKind::Gravity(g), history: History::Constant }).unwrap();
+            let fall = options(Method::Verlet { lumped: true }, Steps::fixed(5e-4), until);
+            let state = end(model.clone(), &fall);
+            let vectors = model.bodies()[0].nodal_vectors().len();
+            for (i, (q, rest)) in state.q.iter().zip(model.reference()).enumerate() {
+                let expected = if i / 3 % vectors == 0 { 0.5 * g[i % 3] * until * until } else { 0.0 };
+                assert!((q - rest - expected).abs() < 1e-12, "{kind:?} coordinate {i}: {q} from {rest}");
+            }
+            assert!(state.strain.total() < 1e-20 * state.kinetic, "{kind:?}: {:?}", state.strain);
+            for (momentum, g) in state.momentum.iter().zip(g) {
+                assert!((momentum / (mass * g * until) - 1.0).abs() < 1e-12);
+            }
+        }
+    }
 }
