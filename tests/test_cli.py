@@ -181,10 +181,14 @@ def test_a_folder_removed_meanwhile_is_made_again(
     assert names == ["plate.png", "result.npz", "summary.json"]
 
 
-def test_a_title_in_letters_without_a_font(edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    scene = edit("cantilever.toml", ('title = "Small cantilever"', 'title = "\u6771\u4eac"'))
+def test_letters_without_a_font_are_told_in_one_line(
+    edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("ancf.text._FAMILIES", ("none such",))
+    scene = edit("cantilever.toml", ('title = "Small cantilever"', 'title = "\u6771\u4eac, \u6771"'))
     assert main(["run", str(scene), "-o", str(tmp_path / "out"), "--quiet", "--plot"]) == 0
-    assert capsys.readouterr().err == ""
+    told = "ancf: warning: no font has these letters, which are boxes in the pictures: \u6771\u4eac\n"
+    assert capsys.readouterr().err == told
 
 
 def test_a_hinge_alone_holds_nothing_in_statics(edit: Edit, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from ancf.balance import EnergyWarning
 from ancf.commands import CANNOT_WRITE, INTERRUPTED, WRONG_INPUT, chart, complain, info, plan, reproduce, run, stability
+from ancf.commands.letters import told_letters
 from ancf.commands.signals import was_stopped, watch_signals
 from ancf.courses import CourseWarning
 from ancf.errors import InputError
@@ -34,10 +35,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Commands tell them in their own way.
     for told in (EnergyWarning, CourseWarning, CheckpointWarning):
         warnings.simplefilter("ignore", told)
-    # Letters that no font has are boxes in the pictures: one sees them there.
-    warnings.filterwarnings("ignore", message="Glyph .* missing from font")
     try:
-        status: int = options.call(options)
+        with told_letters():
+            status: int = options.call(options)
     except InputError as error:
         return complain(error, WRONG_INPUT)
     except RecursionError:
