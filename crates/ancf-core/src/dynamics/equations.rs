@@ -88,20 +88,25 @@ impl<'a> Equations<'a> {
         if !force.iter().all(|f| f.is_finite()) {
             return Err(Failure::Overflow { t: at.t });
         }
-        for (right, force) in self.work.iter_mut().zip(&force) {
+        self.balance(&force, &mut at.a);
+        self.add_reactions(&force, at);
+        Ok(())
+    }
+
+    /// Sets the accelerations of free coordinates to those that balance a force; those of moved supports are known.
+    fn balance(&mut self, force: &[f64], a: &mut [f64]) {
+        for (right, force) in self.work.iter_mut().zip(force) {
             *right = -force;
         }
         if self.moved().next().is_some() {
             // Free coordinates see the inertia of moved ones as a force.
             let mut moved = vec![0.0; force.len()];
             for i in self.moved() {
-                moved[i] = -at.a[i];
+                moved[i] = -a[i];
             }
             self.inertia.add_product(&moved, &mut self.work);
         }
-        self.inertia.solve(&self.work, &mut at.a);
-        self.add_reactions(&force, at);
-        Ok(())
+        self.inertia.solve(&self.work, a);
     }
 
     /// Loads and the power of damping of a state whose accelerations are known.
@@ -139,6 +144,8 @@ impl<'a> Equations<'a> {
     }
 
     /// The strain energy of a state, and what supports exert in it.
+    ///
+    /// Accelerations are those that its forces give a flexible body: the integrator's may lag behind.
     pub fn reactions(&mut self, at: &Instantaneous) -> (StrainEnergy, Vec<Reaction>) {
         let mut force = vec![0.0; at.q.len()];
         let (strain, _) = self.internal(At::rest(&at.q), &at.v, &mut force);
@@ -146,7 +153,15 @@ impl<'a> Equations<'a> {
         for (force, load) in force.iter_mut().zip(&self.work) {
             *force -= load;
         }
-        self.inertia.add_product(&at.a, &mut force);
+        let mut a = at.a.clone();
+        if self.bodies == Bodies::Flexible && !self.system.model().supports().is_empty() {
+            let model = self.system.model();
+            for moved in model.moved() {
+                [_, _, a[moved.coordinate]] = model.prescribed(moved, at.t);
+            }
+            self.balance(&force, &mut a);
+        }
+        self.inertia.add_product(&a, &mut force);
         (strain, self.system.reactions(&at.q, &force, self.bodies))
     }
 
