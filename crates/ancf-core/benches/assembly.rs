@@ -122,9 +122,9 @@ impl Loops {
         let threads = pool.current_num_threads();
         let share = numbers.len().div_ceil(threads);
         let add = |numbers: &mut [f64]| numbers.iter_mut().for_each(|x| *x += 1.0);
-        let memory = || pool.install(|| black_box(numbers).par_chunks_mut(share).for_each(add));
-        let registers = || drop(pool.broadcast(|_| loops::multiply_add(*rounds / threads)));
-        [seconds(memory), seconds(registers)]
+        let memory = || black_box(numbers).par_chunks_mut(share).for_each(add);
+        let registers = || drop(rayon::broadcast(|_| loops::multiply_add(*rounds / threads)));
+        pool.install(|| [seconds(memory), seconds(registers)])
     }
 }
 
