@@ -95,6 +95,27 @@ def test_the_error_in_time_is_taken_out_of_what_is_known_best() -> None:
     assert 0.00125 < search.in_time < 0.0019
 
 
+class _Endless(_Series):
+    """The same, of which no shorter steps reach their end."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        pilot = super()._run(choice, limit)
+        assert choice.stepping is not None
+        assert choice.stepping.step is not None
+        return pilot if choice.stepping.step >= 1e-3 else pilots.Pilot(choice, None, [], limit, pilots.SLOW)
+
+
+def test_nothing_is_promised_of_steps_that_no_shorter_ones_confirm() -> None:
+    for kind, checked in ((_Series, True), (_Endless, False)):
+        series = kind(ancf.Scene("", _model(), ancf.Dynamic(until=0.1, step=1e-3)), ["A"], np.inf, 1)
+        search = _search(series, [Stepping("esdirk", step=1e-3)], 0.2)
+        assert Ascent(search).up([THIN[0], CONTINUOUS])
+        search.correct(search.best)
+        assert search.checked is checked
+    # Statics have no steps to be checked.
+    assert _search(_Stuck(ancf.Scene("", _model(), ancf.Static()), ["A"], np.inf, 1), [], 0.05).checked
+
+
 def test_errors_of_mesh_and_steps_are_weighed() -> None:
     """One element along x errs by 0.1; two of them with the steps that were found are good enough and take 2 s."""
     search = _risen()

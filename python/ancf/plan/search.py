@@ -63,6 +63,8 @@ class Search:
         What tighter steps change of it.
     stepped : Stepping or None
         Than which they are tighter.
+    checked : bool
+        Whether tighter steps were run on any rung that is fine enough; always in statics.
     """
 
     pilots: Pilots
@@ -78,6 +80,7 @@ class Search:
     in_time: float = 0.0
     late: Values | None = None
     stepped: Stepping | None = None
+    checked: bool = False
     _alike: dict[tuple[Family, int, Stepping | None], Pilot | None] = field(default_factory=dict)
     _of_kind: dict[tuple[str, bool, bool] | None, list[Pilot]] = field(default_factory=dict)
     _runs: int = -1
@@ -86,6 +89,7 @@ class Search:
         """Allow the steppings that are good enough; those that replace them are allowed later."""
         self.allowed = [timing.stepping for timing in self.timings]
         self.in_time = max((timing.error for timing in self.timings), default=0.0)
+        self.checked = not self.timings
 
     @property
     def allowance(self) -> float:
@@ -119,7 +123,7 @@ class Search:
         """Take out of what is known best what tighter steps change on a rung; set what is left of the error in time.
 
         Steps that were short enough on the coarse mesh may damp or miss what moves fast on a finer one: they are
-        tightened until that changes little. Where that cannot be run, what was found on the coarse mesh must do.
+        tightened until that changes little. Where that cannot be run nothing is promised.
         """
         if not self.timings:
             return
@@ -133,6 +137,7 @@ class Search:
             tight = self.pilots.run(Choice(rung, stepping))
             if not last.ok or not tight.ok:
                 return
+            self.checked = True
             change = distance(tight.values, last.values, scales(last.values))
             self.late = [after - before for after, before in zip(tight.values, first.values, strict=True)]
             # The limit of stability may set the steps of both: then tighter control tells nothing.
