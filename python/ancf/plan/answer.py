@@ -46,7 +46,7 @@ def of_search(
         reasons.append(f"Refining {finest} along {where} changed {side.difference:.1g}, rate {rate}.")
     if not search.checked:
         reasons.append(
-            "Nothing is promised: steps are known on a coarse mesh only, shorter ones did not reach their end on finer ones."
+            "Nothing is promised: steps are known on a coarse mesh only, shorter ones did not end on finer ones."
         )
     if in_space + in_time > tol:
         slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
