@@ -64,6 +64,7 @@ VARIANTS: Mapping[str, list[dict[str, Any]]] = {
     "pulled_cylinder": [
         {},
         {"curvature": "koiter"},
+        {"divisions": [36, 24]},
         {"divisions": [48, 32]},
         {"divisions": [64, 44]},
         {"membrane": "full"},
@@ -76,6 +77,13 @@ VARIANTS: Mapping[str, list[dict[str, Any]]] = {
         {"divisions": [48, 48]},
         {"membrane": "full"},
         {"curvature": "koiter"},
+    ],
+    "hinged_roof_6.35": [
+        {},
+        {"divisions": [16, 16]},
+        {"divisions": [24, 24]},
+        {"divisions": [24, 24], "element": "thin48"},
+        {"divisions": [16, 16], "curvature": "koiter"},
     ],
 }
 """What is changed in the body of a scene."""

@@ -22,7 +22,7 @@ const NEAR: f64 = 1e-5;
 /// Shares of the actual stress that are tried, one after the other, in the tangent of a stable structure that has negative
 /// pivots with the extrapolated one, and the iterations in which they are.
 const ACTUAL: [f64; 3] = [0.1, 0.3, 1.0];
-const FIRST_ITERATIONS: usize = 3;
+const FIRST_ITERATIONS: usize = 5;
 
 /// How a solution was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
