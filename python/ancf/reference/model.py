@@ -77,6 +77,7 @@ class Model:
         self._fixed = np.zeros(self.coordinates, dtype=np.bool_)
         self._supports: list[tuple[IndexArray, IndexArray]] = []
         self._loads: list[Load] = []
+        self._lumped = False
 
     @property
     def coordinates(self) -> int:
@@ -96,12 +97,16 @@ class Model:
         return scale.ravel()
 
     def lump_mass(self) -> None:
-        """Make the mass matrix diagonal, scaled to the mass of the body; Hinton, Rock and Zienkiewicz (1976)."""
+        """Make the mass matrix diagonal, scaled to the mass of the body; Hinton, Rock and Zienkiewicz (1976).
+
+        Gravity that is added afterwards acts on it: on the positions alone.
+        """
         along = np.zeros_like(self._nodal(self.reference))
         along[:, 0, 0] = 1
         translation, diagonal = along.ravel(), self.mass.diagonal()
         scale = translation @ (self.mass @ translation) / (translation @ diagonal)
         self.mass = sp.diags_array(scale * diagonal).tocsc()
+        self._lumped = True
 
     def fix(self, at: At, coordinates: Sequence[str]) -> None:
         """Fix vectors ("r", "r_x", ...) or components ("r.x", "r_y.z", ...) of the nodes at a place."""
@@ -120,12 +125,24 @@ class Model:
         self.fix(at, self.vectors)
 
     def add_gravity(self, acceleration: ArrayLike, history: History = "constant") -> None:
-        """Gravity: a force rho g per volume; acceleration g in m/s2."""
+        """Gravity: a force rho g per volume, or on lumped masses; acceleration g in m/s2."""
+        if self._lumped:
+            self._add_weights(acceleration, history)
+            return
         N, mass = self.element.mass_points()
         elements, samples = mass.shape
         cells = np.repeat(np.arange(elements), samples)
         table = np.tile(N[:, None], (elements, 1, 1))
         self._loads.append(Load(cells, table, mass.ravel(), dead(acceleration), False, history))
+
+    def _add_weights(self, acceleration: ArrayLike, history: History) -> None:
+        """Gravity on the lumped masses of the positions: a force at every node, from one of the cells around it."""
+        nodes, first = np.unique(self.mesh.cells, return_index=True)
+        cells, corners = np.unravel_index(first, self.mesh.cells.shape)
+        table = np.zeros((len(nodes), 1, self._index.shape[1]))
+        table[np.arange(len(nodes)), 0, corners * len(self.vectors)] = 1
+        mass = self._nodal(self.mass.diagonal())[nodes, 0, 0]
+        self._loads.append(Load(cells, table, mass, dead(acceleration), False, history))
 
     def add_force(self, at: tuple[float, float], force: ArrayLike, history: History = "constant") -> None:
         """Add a dead force (N) at the material point (x, y)."""

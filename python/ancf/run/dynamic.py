@@ -59,7 +59,7 @@ class Dynamic(LoadedRun):
     rho_inf : float, optional
         Of "generalized_alpha", the spectral radius at infinite frequency, from 0 to 1; 0.9 if left out.
     lumped : bool, default False
-        Of "verlet": use a diagonal mass matrix.
+        Of "verlet": use a diagonal mass matrix, on which gravity acts.
     outputs : sequence of float, optional
         Times of the states to record, s; they increase and lie in [0, until].
     every : float, optional

@@ -1,5 +1,6 @@
 //! Mass: the scalar mass matrix, its damping, and the motion it carries.
 
+use std::mem::replace;
 use std::sync::Arc;
 
 use nalgebra::Vector3;
@@ -10,6 +11,7 @@ use crate::model::Model;
 use crate::strain::packed;
 
 use super::System;
+use super::loads::Loads;
 
 impl System {
     /// Scalar mass matrix over all nodal vectors.
@@ -39,6 +41,39 @@ impl System {
             let index = index.expect("every node has a position");
             (0..body.grid().nodes()).map(move |node| body.vector(node, index))
         })
+    }
+
+    /// Does `work` with the lumped mass matrix, and with gravity that acts on it, so that a free body falls without
+    /// being bent: on the positions alone.
+    pub(crate) fn with_lumped_mass<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
+        let (mass, weight) = self.lumped_mass();
+        let loads = Loads::new(&self.model, &self.blocks, &weight);
+        let consistent =
+            (replace(&mut self.mass, mass), replace(&mut self.weight, weight), replace(&mut self.loads, loads));
+        let result = work(self);
+        (self.mass, self.weight, self.loads) = consistent;
+        result
+    }
+
+    /// The diagonal of the mass matrix, scaled so that each body keeps its mass, and what it weighs in a uniform field.
+    ///
+    /// # Source
+    ///
+    /// Hinton, Rock and Zienkiewicz (1976).
+    fn lumped_mass(&self) -> (SymmetricMatrix, Vec<f64>) {
+        let pattern = self.mass.pattern();
+        let mut values: Vec<f64> = (0..pattern.n()).map(|a| self.mass.values()[pattern.col_ptr()[a]]).collect();
+        let mut weight = vec![0.0; pattern.n()];
+        let positions: Vec<usize> = self.positions().collect();
+        for body in self.model.bodies() {
+            let vectors = body.vector(0, 0)..body.vector(body.grid().nodes(), 0);
+            let own = || positions.iter().filter(|a| vectors.contains(a));
+            let scale = own().map(|a| self.weight[*a]).sum::<f64>() / own().map(|a| values[*a]).sum::<f64>();
+            values[vectors.clone()].iter_mut().for_each(|value| *value *= scale);
+            own().for_each(|a| weight[*a] = values[*a]);
+        }
+        let pattern = Pattern::from_groups::<[usize; 0]>(pattern.n(), &[]).expect("a diagonal");
+        (SymmetricMatrix::new(Arc::new(pattern), values), weight)
     }
 
     /// Kinetic energy (J), momentum (kg m/s) and angular momentum about the origin (kg m2/s), with a mass matrix over

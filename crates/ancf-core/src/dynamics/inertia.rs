@@ -23,16 +23,12 @@ struct Part {
 }
 
 impl Inertia {
-    /// The consistent mass matrix, or the lumped one: its diagonal, scaled so that each body keeps its mass.
-    ///
-    /// # Source
-    ///
-    /// Dufva and Shabana (2005), (37), (38); Hinton, Rock and Zienkiewicz (1976) for the lumping.
-    pub fn new(system: &System, lumped: bool) -> Result<Self, Failure> {
+    /// The mass matrix that the system has now.
+    pub fn new(system: &System) -> Result<Self, Failure> {
         if let Some(body) = system.model().bodies().iter().find(|body| body.plate().material.density() == 0.0) {
             return Err(Failure::Massless { body: body.name().to_owned() });
         }
-        let matrix = if lumped { lump(system) } else { system.mass().clone() };
+        let matrix = system.mass().clone();
         let mut parts: Vec<Part> = Vec::new();
         for component in 0..3 {
             let of_component = system.free().iter().filter(|coordinate| *coordinate % 3 == component);
@@ -82,25 +78,6 @@ impl Inertia {
             }
         }
     }
-}
-
-/// The diagonal of the mass matrix, scaled body by body to its mass.
-fn lump(system: &System) -> SymmetricMatrix {
-    let mass = system.mass();
-    let n = mass.pattern().n();
-    let diagonal: Vec<f64> = (0..n).map(|a| mass.values()[mass.pattern().col_ptr()[a]]).collect();
-    let positions: Vec<usize> = system.positions().collect();
-    let mut values = diagonal.clone();
-    for body in system.model().bodies() {
-        let vectors = body.vector(0, 0)..body.vector(body.grid().nodes(), 0);
-        let own = || positions.iter().filter(|a| vectors.contains(a));
-        let scale = own().map(|a| system.weight()[*a]).sum::<f64>() / own().map(|a| diagonal[*a]).sum::<f64>();
-        for value in &mut values[vectors.clone()] {
-            *value *= scale;
-        }
-    }
-    let pattern = Pattern::from_groups::<[usize; 0]>(n, &[]).expect("a diagonal");
-    SymmetricMatrix::new(Arc::new(pattern), values)
 }
 
 /// Factorises the part of a matrix with these rows and columns, in their order.

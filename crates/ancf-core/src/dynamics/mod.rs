@@ -128,7 +128,9 @@ pub fn simulate(
     let start = Instant::now();
     let mut counts = Counts::default();
     let mut reached = 0.0;
-    let end = run(system, options, checkpoint, &mut counts, &mut reached, observer);
+    let work = |system: &mut System| run(system, options, checkpoint, &mut counts, &mut reached, observer);
+    let lumped = options.method == Method::Verlet { lumped: true };
+    let end = if lumped { system.with_lumped_mass(work) } else { work(system) };
     let counts = Counts { forces: counts.forces, factorizations: counts.factorizations, ..counts.of(system) };
     let seconds = Seconds::new(system, start.elapsed());
     Ok(Run { outcome: Outcome::from_end(end), reached, jumps: Vec::new(), counts, seconds })
@@ -142,7 +144,7 @@ fn run(
     reached: &mut f64,
     observer: &mut dyn Observer,
 ) -> Result<(), Failure> {
-    let inertia = Inertia::new(system, options.method == (Method::Verlet { lumped: true }))?;
+    let inertia = Inertia::new(system)?;
     let newton = Newton::new(system, options.newton());
     let bodies = if options.method == Method::Rigid { Bodies::Rigid } else { Bodies::Flexible };
     let mut simulation = Simulation::new(Equations::new(system, newton, inertia, bodies), options);

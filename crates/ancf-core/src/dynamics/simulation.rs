@@ -234,8 +234,16 @@ impl<'a> Simulation<'a> {
         loop {
             let left = target - self.now.t;
             let step = self.controller.step.min(tolerances.max_step).min(limit);
-            // Two equal steps rather than one and a tiny rest.
-            let h = if step > 0.999 * left { left } else { step.min(0.5 * left).max(step.min(left - step)) };
+            let h = if step > 0.999 * left {
+                left
+            } else if limit.is_finite() {
+                // Equal steps: near the limit of an explicit method what oscillates fast may grow with each change of
+                // their length, which at outputs comes at regular times.
+                left / (left / step - 0.001).ceil()
+            } else {
+                // Two equal steps rather than one and a tiny rest.
+                step.min(0.5 * left).max(step.min(left - step))
+            };
             self.next.t = if h == left { target } else { self.now.t + h };
             if h < tolerances.min_step.min(left) || self.next.t <= self.now.t {
                 return Err(Failure::StepTooSmall { t: self.now.t, step: h, cause });

@@ -13,6 +13,9 @@ pub(super) const EVERY: usize = 20;
 /// Share of the limit of stability that controlled explicit steps may take: stiffness changes between two estimates. Fixed
 /// ones that are longer are compared with a precise estimate.
 const STABLE: f64 = 0.9;
+/// A limit that has risen by less than this factor is left as it is: steps that change at every estimate pump energy into what
+/// oscillates fast.
+const STEADY: f64 = 1.02;
 /// Change of the squared highest frequency in an iteration at which it is found: for a fixed step that the limit may refuse,
 /// and where the share above covers what is missing.
 const PRECISE: f64 = 1e-6;
@@ -48,7 +51,10 @@ impl Simulation<'_> {
                 }
             }
             Steps::Controlled(_) => {
-                self.controller.limit = self.limit(ROUGH).map_or(f64::INFINITY, |limit| STABLE * limit);
+                let limit = self.limit(ROUGH).map_or(f64::INFINITY, |limit| STABLE * limit);
+                if !(self.controller.limit..STEADY * self.controller.limit).contains(&limit) {
+                    self.controller.limit = limit;
+                }
             }
         }
         Ok(())
