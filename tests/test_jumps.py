@@ -224,13 +224,12 @@ def test_a_jump_ends_where_a_damped_motion_does() -> None:
     mass = coo_array((values, (rows, columns)), shape=(len(before), len(before))).toarray()[np.ix_(free, free)]
 
     def at(x: NDArray[np.float64]) -> NDArray[np.float64]:
-        q = before.copy()
+        q: NDArray[np.float64] = before.copy()
         q[free] = x
         return q
 
     def force(x: NDArray[np.float64]) -> NDArray[np.float64]:
-        out: NDArray[np.float64] = (core.external_force(at(x), t) - core.internal_force(at(x)))[free]
-        return out
+        return (core.external_force(at(x), t) - core.internal_force(at(x)))[free]
 
     start = before[free] + 1e-3 * np.random.default_rng(0).standard_normal(len(free))
     motion = solve_ivp(
