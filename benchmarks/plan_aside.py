@@ -30,7 +30,7 @@ def aside_statics() -> Iterator[Case]:
     card = plate((0.21, 0.15), 3e-4, PAPER)
     yield Case(
         scene("card on a frame", card, SIMPLE, [ancf.Pressure(pressure=40.0)], (0.06, 0.04), run, "von_mises_top"),
-        ((28, 20), (56, 40)),
+        ((64, 48), (80, 64)),
     )
     sector = ancf.Annulus(radii=(0.05, 0.2), angle=1.2, divisions=(4, 4), thickness=2e-3, material=RUBBER)
     lift = ancf.Force(at="corner:x1y1", force=(0.0, 0.0, 0.004))

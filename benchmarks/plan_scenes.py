@@ -66,7 +66,7 @@ def statics() -> Iterator[Case]:
     mat = plate((0.4, 0.3), 8e-3, RUBBER)
     ends = [WALL, ancf.Support(at="edge:x1", clamp=True)]
     yield Case(
-        scene("rubber blown", mat, ends, [ancf.Pressure(pressure=200.0)], (0.2, 0.15), run), ((40, 30), (64, 48))
+        scene("rubber blown", mat, ends, [ancf.Pressure(pressure=200.0)], (0.2, 0.15), run), ((96, 48), (192, 48))
     )
     yield Case(scene("roof bends", roof, [WALL], [line("x1", 2e3, 0, 0)], (1.0, 0.5), run), ((24, 12), (32, 16)))
     block = plate((0.3, 0.2), 0.03, STEEL)
@@ -186,10 +186,10 @@ def later_motions() -> Iterator[Case]:
     flick = ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.2, 1.0), history=pulse)
     yield Case(
         scene("paper flicked", sheet, [], [flick, WEIGHT], (0.2, 0.0), ancf.Dynamic(until=0.05, step=5e-4)),
-        ((12, 6), (16, 8)),
+        ((20, 10), (28, 14)),
         x,
         y,
-        Stepping("esdirk", step=0.05 / 150),
+        Stepping("esdirk", step=0.05 / 300),
     )
     blade = ancf.Annulus(radii=(0.2, 0.4), angle=1.2, divisions=(4, 4), thickness=1e-3, material=STEEL)
     yield Case(
@@ -204,7 +204,7 @@ def later_motions() -> Iterator[Case]:
     )
     yield Case(
         scene("rubber bowl", bowl, [WALL], [WEIGHT], (1.5, 1.0), ancf.Dynamic(until=0.12, step=1e-3)),
-        ((12, 12), (24, 20)),
+        ((32, 32), (36, 30)),
         x,
         (1, 2, 4, 8),
         Stepping("verlet", rtol=1e-4),
@@ -212,7 +212,7 @@ def later_motions() -> Iterator[Case]:
     whip = plate((0.6, 0.06), 0.012, RUBBER)
     yield Case(
         scene("long swing", whip, [HINGE], [WEIGHT], (0.6, 0.03), ancf.Dynamic(until=0.6, step=2e-3)),
-        ((24, 3), (32, 4)),
+        ((32, 6), (40, 8)),
         x,
         y,
         Stepping("esdirk", step=0.6 / 300),
@@ -223,7 +223,7 @@ def later_motions() -> Iterator[Case]:
     push = ancf.LineLoad(at="edge:y1", per_length=(1e4, 0.0, 0.0), history=[(0.0, 0.0), (3e-3, 1.0)])
     yield Case(
         scene("pipe pushed", pipe, [foot], [push], (0.75, 0.3), ancf.Dynamic(until=4e-3, step=2e-5)),
-        ((24, 40), (32, 56)),
+        ((24, 160), (32, 224)),
         x,
         (1, 2, 4, 8),
         Stepping("esdirk", step=4e-3 / 48),

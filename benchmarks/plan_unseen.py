@@ -36,7 +36,7 @@ def first_statics() -> Iterator[Case]:
     tape = plate((0.4, 0.04), 2e-3, RUBBER)
     yield Case(
         scene("tape bends", tape, [WALL], [line("x1", 0, 0, 0.1)], (0.13, 0.02), run, "curvature"),
-        ((60, 16), (180, 24)),
+        ((120, 32), (180, 36)),
     )
     hook = ancf.Annulus(radii=(0.05, 0.08), angle=2.5, divisions=(2, 6), thickness=3e-3, material=STEEL)
     yield Case(
@@ -77,7 +77,7 @@ def first_motions() -> Iterator[Case]:
     ]
     yield Case(
         scene("mat spun", mat, [], spin, (0.3, 0.0), ancf.Dynamic(until=0.12, step=1e-3), "displacement"),
-        ((20, 14), (28, 20)),
+        ((36, 28), (52, 40)),
         _X,
         (1, 2, 4, 8),
         Stepping("verlet", rtol=1e-4),

@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import ancf
+from ancf.balance import balance_warnings
 from ancf.cli import main
 from ancf.run import Method
 
@@ -70,6 +71,20 @@ def test_a_body_at_rest_is_not_said_to_gain_energy() -> None:
     result = ancf.simulate(ancf.Model(bodies=pendulum().bodies, supports=held), until=0.01, step=1e-3)
     assert result.energy.kinetic[-1] < 1e-20
     assert result.warnings == ()
+    for method in METHODS:
+        at_rest = ancf.Model(bodies=pendulum().bodies, supports=held)
+        assert ancf.simulate(at_rest, until=0.01, rtol=1e-3, method=method).warnings == ()
+
+
+def test_energy_that_comes_from_nowhere_is_told_under_error_control_as_well() -> None:
+    """What error control takes is within its tolerance; what it adds is not."""
+    run, none = ancf.Dynamic(until=1.0, rtol=0.1), np.zeros(3)
+    energy = ancf.Energy(np.linspace(0.0, 1.0, 3), np.array([1.0, 0.9, 1.06]), none, none, none, none)
+    (told,) = balance_warnings(run, energy, moved=False)
+    assert "rises by 0.16 J, 15% of the largest energy" in told
+    assert "a smaller rtol" in told
+    energy = ancf.Energy(energy.t, np.array([1.0, 0.9, 0.5]), none, none, none, none)
+    assert balance_warnings(run, energy, moved=False) == ()
 
 
 def test_a_checkpoint_that_cannot_be_written_is_refused_first(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from ancf.plan.ladder import CONTINUOUS, RIGID, THIN, Choice, Rung, Stepping, co
 from ancf.plan.planner import LEAST, MOST, PROPORTION
 from ancf.plan.rigid import as_rigid, deflection
 from ancf.plan.shear import shear
-from ancf.plan.symmetry import halved
+from ancf.plan.symmetry import below, halved
 from ancf.solve import solve
 
 STEEL = ancf.Material(E=2.07e11, nu=0.3, density=7810.0)
@@ -428,6 +428,28 @@ def test_the_mirror_holds_all_that_an_element_has() -> None:
         )
         assert one.ok
         assert np.allclose(one.values[0], other.values[0], rtol=0.0, atol=1e-9), family
+
+
+def test_curvatures_that_jump_across_the_mirror_are_those_of_the_low_side() -> None:
+    """A bent strip whose probe lies on its mirror: on coarse meshes the twist has another sign on the other side."""
+    plate = ancf.Rectangle(size=(0.4, 0.04), divisions=(4, 4), thickness=2e-3, material=RUBBER)
+    tape = ancf.Model(
+        bodies={"tape": plate},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(0.0, 0.0, 0.1))],
+        probes=[ancf.Probe(name="A", at=(0.13, 0.02), quantity="curvature")],
+    )
+    result = ancf.solve_static(tape)
+    low = below(tape, tape.probes[0], [1])
+    assert low == pytest.approx((0.13, 0.02), abs=1e-9)
+    at, beside = (result.evaluate("tape", [place], "curvature")[-1, 0] for place in ((0.13, 0.02), low))
+    assert beside[2] == pytest.approx(-at[2])
+    assert abs(beside[2]) > 1e-4 * abs(beside[0])
+    plan = ancf.plan(tape, run=ancf.Static(), tol=2e-2, threads=1)
+    assert "the low half is enough" in " ".join(plan.reasons)
+    body = plan.scene.model.bodies["tape"]
+    assert isinstance(body, ancf.Rectangle)
+    assert body.size == (0.4, 0.02)
 
 
 def test_several_probes_in_statics_are_all_precise(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

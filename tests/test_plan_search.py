@@ -13,11 +13,12 @@ from ancf.plan.climb import Climb
 from ancf.plan.cost import Costs, Rates
 from ancf.plan.descent import Descent
 from ancf.plan.errors import Side
+from ancf.plan.families import to_refine
 from ancf.plan.guess import Prior, fit
 from ancf.plan.ladder import CONTINUOUS, THIN, Choice, Rung, Stepping
 from ancf.plan.learn import learn, separate
 from ancf.plan.search import Search
-from ancf.plan.timing import Timing
+from ancf.plan.timing import Timing, steppings
 
 
 def _model() -> ancf.Model:
@@ -92,6 +93,27 @@ def test_the_error_in_time_is_taken_out_of_what_is_known_best() -> None:
     search.correct(Rung(THIN[0], ((2, 2),)))
     assert search.exact[0][1, 0] == pytest.approx(1.00125, abs=1e-3)
     assert 0.00125 < search.in_time < 0.0019
+
+
+class _Endless(_Series):
+    """The same, of which no shorter steps reach their end."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        pilot = super()._run(choice, limit)
+        assert choice.stepping is not None
+        assert choice.stepping.step is not None
+        return pilot if choice.stepping.step >= 1e-3 else pilots.Pilot(choice, None, [], limit, pilots.SLOW)
+
+
+def test_nothing_is_promised_of_steps_that_no_shorter_ones_confirm() -> None:
+    for kind, checked in ((_Series, True), (_Endless, False)):
+        series = kind(ancf.Scene("", _model(), ancf.Dynamic(until=0.1, step=1e-3)), ["A"], np.inf, 1)
+        search = _search(series, [Stepping("esdirk", step=1e-3)], 0.2)
+        assert Ascent(search).up([THIN[0], CONTINUOUS])
+        search.correct(search.best)
+        assert search.checked is checked
+    # Statics have no steps to be checked.
+    assert _search(_Stuck(ancf.Scene("", _model(), ancf.Static()), ["A"], np.inf, 1), [], 0.05).checked
 
 
 def test_errors_of_mesh_and_steps_are_weighed() -> None:
@@ -216,6 +238,66 @@ def test_where_nothing_is_promised_the_finest_mesh_is_believed() -> None:
     for own in (0.05, 0.12):
         search.climbs[0].own = own
         assert search.best == coarse
+
+
+class _Stuck(pilots.Pilots):
+    """Statics whose values are 1 and 0.1 / nx; with a single element along y they take a thousand times as long."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        nx, ny = choice.rung.divisions[0]
+        seconds = nx * ny * (1000.0 if ny == 1 else 1.0)
+        if seconds > limit:
+            return pilots.Pilot(choice, None, [], limit, pilots.SLOW)
+        result: Any = SimpleNamespace(seconds={"setup": 0.0})
+        return pilots.Pilot(choice, result, [np.array([[0.0], [1.0 + 0.1 / nx]])], seconds, "ok")
+
+
+def test_a_coarse_neighbour_that_takes_longer_than_the_fine_mesh_is_given_up() -> None:
+    search = _search(_Stuck(ancf.Scene("", _model(), ancf.Static()), ["A"], np.inf, 1), [], 0.05)
+    assert to_refine(search)
+    assert Ascent(search).up([THIN[0], CONTINUOUS])
+    assert abs(search.exact[0][1, 0] - 1.0) <= search.own < 0.05
+    slow = [pilot for pilot in search.pilots.done if not pilot.ok]
+    assert slow
+    assert all(pilot.choice.rung.divisions[0][1] == 1 for pilot in slow)
+    # None took more than the finer mesh beside it.
+    assert all(pilot.seconds <= 2 * pilot.choice.rung.elements + 3.0 for pilot in slow)
+
+
+def test_costs_of_other_lengths_are_powers() -> None:
+    step = Stepping("hht", step=1e-3)
+    assert step.lengthening(step.tighter()) == pytest.approx(2**0.8)
+    control = Stepping("hht", rtol=1e-3)
+    assert control.lengthening(control.tighter()) == pytest.approx(4**0.3)
+
+
+class _Stepped(pilots.Pilots):
+    """Motion of half a period, with errors in time of the second order; explicit steps must be short to be stable."""
+
+    def _run(self, choice: Choice, limit: float) -> pilots.Pilot:
+        stepping = choice.stepping
+        assert stepping is not None
+        steps = 10.0 * (stepping.rtol or 0.0) ** -0.3 if stepping.step is None else 0.1 / stepping.step
+        seconds = 0.01 * steps * (100.0 if stepping.explicit else 1.0)
+        if seconds > limit:
+            return pilots.Pilot(choice, None, [], limit, pilots.SLOW)
+        result: Any = SimpleNamespace(seconds={"setup": 0.0})
+        return pilots.Pilot(choice, result, [np.array([[0.0], [1.0 + steps**-2.0]])], seconds, "ok")
+
+
+def test_of_methods_that_are_too_slow_little_is_run() -> None:
+    """Explicit steps that are too slow with the loosest control are so for stability: others are not run."""
+    stepped = _Stepped(ancf.Scene("", _model(), ancf.Dynamic(until=0.1, step=1e-3)), ["A"], np.inf, 1)
+    rung = Rung(THIN[0], ((2, 2),))
+    exact = pilots.Pilot(Choice(rung), None, [np.array([[0.0], [1.0]])], 10.0, "ok")
+    found = steppings(stepped, rung, exact, 1e-3)
+    assert found
+    assert all(timing.error <= 0.25e-3 for timing in found)
+    methods = [pilot.choice.stepping.method for pilot in stepped.done if pilot.choice.stepping]
+    assert methods.count("verlet") == 1
+    assert "rk" not in methods
+    # The factorisation that is kept is taken along though it saves nothing on the coarse mesh.
+    assert any(timing.stepping.reuse for timing in found)
 
 
 def test_nothing_is_tried_where_no_error_is_left_to_it() -> None:

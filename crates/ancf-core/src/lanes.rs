@@ -13,8 +13,12 @@ use pulp::{Arch, Simd};
 pub const MAX_LANES: usize = 8;
 
 /// The instruction set for so many elements: the widest, or registers of four numbers where those hold them all, which
-/// takes half the time on processors that work on wider ones in two halves and no more on others.
+/// takes half the time on processors that work on wider ones in two halves and no more on others. One element takes half
+/// the time again with single numbers, though they have no fused multiply-add: all it needs stays in the first cache.
 pub fn arch(elements: usize) -> Arch {
+    if elements == 1 {
+        return Arch::Scalar;
+    }
     #[cfg(target_arch = "x86_64")]
     if elements <= 4
         && let Some(simd) = pulp::x86::V3::try_new()

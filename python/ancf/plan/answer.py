@@ -29,7 +29,7 @@ def of_search(
     """Return the plan that follows from a search."""
     pilots, tol, finest = search.pilots, search.tol, search.best
     errors = search.observed()
-    converged = in_space + in_time <= tol
+    converged = search.checked and in_space + in_time <= tol
     reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.2g}."]
     if chosen.choice.rung == finest:
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
@@ -44,7 +44,11 @@ def of_search(
         where = f"{names[body]}, {axes[axis]}" if len(names) > 1 else axes[axis]
         rate = "unknown" if side.rate is None else f"{side.rate:.1f}"
         reasons.append(f"Refining {finest} along {where} changed {side.difference:.1g}, rate {rate}.")
-    if not converged:
+    if not search.checked:
+        reasons.append(
+            "Nothing is promised: steps are known on a coarse mesh only, shorter ones did not end on finer ones."
+        )
+    if in_space + in_time > tol:
         slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
         finer = [p for p in pilots.done if not p.ok and p.choice.rung.elements > finest.elements and p.outcome != SLOW]
         if pilots.interrupted:

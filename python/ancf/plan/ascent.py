@@ -13,7 +13,7 @@ from ancf.plan.climb import Climb
 from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import Choice, Family, Rung, Stepping
 from ancf.plan.learn import COMPARED, learn, separate
-from ancf.plan.pilots import Pilot
+from ancf.plan.pilots import SLOW, Pilot
 from ancf.plan.search import Search
 from ancf.plan.timing import SHARE
 
@@ -38,6 +38,8 @@ _PATIENCE = 2
 """Rungs in a row that may be no better than the one before."""
 _AGREED = 0.6
 """Part of the tolerance up to which another element on the finest mesh may be off."""
+_OTHERS, _OTHERS_COARSE = 6.0, 2.0
+"""Times the seconds of the finest mesh that another element may take there, and on half of the elements along sides."""
 _RIVAL = 1.4
 """Cost of another stepping, predicted and observed, relative to the one that was run, up to which it is kept."""
 _RACE = 0.05
@@ -186,14 +188,25 @@ class Ascent:
             others = [pilot for pilot in done if pilot is not None]
             if not others:
                 return
-            own = search.pilots.run(Choice(last, stepping), _AFFORDED * search.pilots.left)
+            own = search.pilots.run(Choice(last, stepping), self._even(climb.next, last))
             if not own.ok:
-                return
+                if own.outcome != SLOW or len(search.timings) == 1 or search.pilots.left <= 0.0:
+                    return
+                search.timings.remove(search.timing(climb.next))
+                continue
             scale = scales(own.values)
             farthest = max(others, key=lambda pilot: distance(own.values, pilot.values, scale))
             if distance(own.values, farthest.values, scale) <= 2 * SHARE * search.tol:
                 return
             self._shorten_one(own, farthest)
+
+    def _even(self, rung: Rung, last: Rung) -> float:
+        """Return the seconds on the last rung beyond which the stepping of a rung is not the cheapest there."""
+        search, stepping = self.search, self.search.stepping(rung)
+        others = [search.predict_with(rung, timing) for timing in search.timings if timing.stepping != stepping]
+        here, there = (search.predict_choice(Choice(at, stepping)) for at in (last, rung))
+        even = min(others, default=np.inf) * here / there if here and there else np.inf
+        return min(_RIVAL * even + 0.02, _AFFORDED * search.pilots.left)
 
     def _shorten_one(self, *pilots: Pilot) -> None:
         """Of two steppings that disagree on a rung shorten the one that changes more with shorter steps."""
@@ -272,7 +285,8 @@ class Ascent:
             if nearest < np.inf and family.element == rung.family.element:
                 break
             if family != rung.family:
-                pilot = self.search.run(replace(mesh, family=family), 6 * self._seconds(rung))
+                limit = (_OTHERS if mesh == rung else _OTHERS_COARSE) * self._seconds(rung)
+                pilot = self.search.run(replace(mesh, family=family), limit)
                 off = distance(pilot.values, lead.exact, scale) if pilot.ok else np.inf
                 # Half of what the coarse mesh is off may be bearable: then the fine one need not be run.
                 if mesh == rung or off <= max(agreed, 2 * part * self.search.tol):

@@ -156,7 +156,7 @@ def calibrated(folder: Path | None = None, threads: int | None = None) -> Costs:
     Costs
         For predictions.
     """
-    file = (folder or _cache()) / "cost.json"
+    file = (folder or cache_folder()) / "cost.json"
     key = _machine()
     try:
         kept: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
@@ -191,7 +191,8 @@ def _tuples(values: dict[str, list[float]]) -> dict[str, Any]:
     return {name: tuple(numbers) for name, numbers in values.items()}
 
 
-def _cache() -> Path:
+def cache_folder() -> Path:
+    """Return where what was measured on this machine is kept."""
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ancf"
 
 

@@ -13,7 +13,7 @@ from ancf.plan.guess import Guess, Prior, fit
 from ancf.plan.ladder import COUNTS, Choice, Family, Rung, Stepping
 from ancf.plan.search import Search
 
-_RUNS = 30.0
+_RUNS = 12.0
 """Runs of the choice for which a trial must pay: its chance times what one run of it saves, times these."""
 _WORTH = 0.85
 """Predicted cost of a trial relative to the choice so far: what saves less is left to the noise of the clock."""
@@ -21,7 +21,7 @@ _HOPELESS = 0.01
 """Chance below which a rung is not tried however little it costs."""
 _TAIL = 2
 """Power of a guessed error with which that chance falls: errors that cancel make it fall slowly."""
-_DOWN, _FEW = 0.5, 4
+_DOWN, _FEW = 0.3, 3
 """Time for the way down, relative to the time before; and how many rungs are tried anyway."""
 _NEAR, _SHORT, _TIMED = 1.5, 0.1, 3
 """Times the cheapest, and seconds, up to which a run is timed again before one is chosen; and how many at most."""
@@ -58,14 +58,14 @@ class Descent:
         """
         pilots = self.search.pilots
         for turn in count():
-            taken = pilots.spent - self._begin
-            over = taken >= min(_DOWN * self._begin, _RUNS * self._limit()) and turn >= _FEW
+            taken, limit = pilots.spent - self._begin, self._limit()
+            over = taken >= min(_DOWN * self._begin, _RUNS * limit) and turn >= _FEW
             if over or pilots.left <= 0.0 or pilots.spent >= self.worth:
                 return
-            trial = self._trial()
+            trial = self._trial(limit)
             if trial is None:
                 return
-            self._try(trial)
+            self._try(*trial, limit)
 
     def settle(self) -> None:
         """Time again the short runs among which the cheapest is chosen."""
@@ -75,43 +75,51 @@ class Descent:
             if len(good) > 1 and pilot.seconds <= min(_NEAR * good[0].seconds, _SHORT):
                 self.search.pilots.again(pilot)
 
-    def _try(self, choice: Choice) -> None:
+    def _try(self, choice: Choice, guessed: float, limit: float) -> None:
         search = self.search
-        search.guessed[choice] = self._guess(choice.rung.family)(choice.rung) + search.own
+        search.guessed[choice] = guessed
         predicted = search.predict_choice(choice)
         if predicted is not None:
             search.predicted.setdefault(choice, predicted)
-        search.pilots.run(choice, self._limit() + 0.02)
+        search.pilots.run(choice, limit + 0.02)
 
     def _limit(self) -> float:
         current = self.search.cheapest(self.search.observed())
         return np.inf if current is None else current.seconds
 
-    def _trial(self) -> Choice | None:
-        """Return what was not run and promises the largest saving; None if nothing is worth its cost."""
+    def _trial(self, limit: float) -> tuple[Choice, float] | None:
+        """Return what was not run and promises the largest saving, and its guessed error; None if nothing is worth it.
+
+        The likeliest come first, so that costs need not be predicted of those that could not save more.
+        """
         search = self.search
-        limit, room = self._limit(), search.allowance
+        own, room, left = search.own, search.allowance, search.pilots.left
         if room <= 0.0:
             return None
-        tried = {pilot.choice for pilot in search.pilots.done}
-        found, best = None, 0.0
+        hopes = []
         for family in search.families:
             guess = self._guess(family)
             for rung in self._below(family):
-                in_space = guess(rung) + search.own
-                if _likely(in_space / room) < _HOPELESS:
+                in_space = guess(rung) + own
+                likely = _likely(in_space / room)
+                if likely >= _HOPELESS:
+                    hopes.append((likely, in_space, rung))
+        hopes.sort(key=lambda hope: -hope[0])
+        found, best = None, 0.0
+        for upper, in_space, rung in hopes:
+            if np.isfinite(limit) and upper * _RUNS * limit <= best:
+                break
+            for stepping, in_time in self._steppings(rung):
+                choice = Choice(rung, stepping)
+                likely = _likely((in_space + in_time) / room)
+                if likely < _HOPELESS or search.pilots.tried(choice):
                     continue
-                for stepping, in_time in self._steppings(rung):
-                    choice = Choice(rung, stepping)
-                    likely = _likely((in_space + in_time) / room)
-                    if likely < _HOPELESS or choice in tried:
-                        continue
-                    cost = search.predict_choice(choice)
-                    if cost is None or cost > min(_WORTH * limit, search.pilots.left):
-                        continue
-                    gain = likely * _RUNS * (limit - cost) - cost if np.isfinite(limit) else likely / cost
-                    if gain > best:
-                        found, best = choice, gain
+                cost = search.predict_choice(choice)
+                if cost is None or cost > min(_WORTH * limit, left):
+                    continue
+                gain = likely * _RUNS * (limit - cost) - cost if np.isfinite(limit) else likely / cost
+                if gain > best:
+                    found, best = (choice, in_space), gain
         return found
 
     def _steppings(self, rung: Rung) -> Iterator[tuple[Stepping | None, float]]:
@@ -143,10 +151,11 @@ class Descent:
         """Return a model of the errors of a family, fitted to its pilots, or else to those that were refined."""
         search = self.search
         sides = next((climb.sides for climb in search.climbs if climb.family == family), search.sides)
-        scale = scales(search.exact)
+        exact, own = search.exact, search.own
+        scale = scales(exact)
         # Distances below what `exact` lacks tell nothing.
         errors = [
-            (pilot.choice.rung, max(distance(pilot.values, search.exact, scale), 0.5 * search.own))
+            (pilot.choice.rung, max(distance(pilot.values, exact, scale), 0.5 * own))
             for pilot in search.pilots.done
             if pilot.ok and pilot.choice.rung.family == family
         ]

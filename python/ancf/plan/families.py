@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ancf.plan.asked import changes
 from ancf.plan.errors import Values, distance, scales
 from ancf.plan.ladder import Family, Rung
@@ -13,9 +15,12 @@ def to_refine(search: Search) -> list[Family]:
 
     Agreement matters because what locks hardly changes either.
     """
-    coarse, fine = (_of_families(search, factor) for factor in (1, 2))
+    fine = _of_families(search, 2, 3.0 * search.pilots.left / 8)
     if not fine:
         return []
+    # A coarse mesh that takes longer than a fine one has trouble on its way, and tells little.
+    done = (search.pilots.known(search.choice(_rung(search, family, 2))) for family in fine)
+    coarse = _of_families(search, 1, min((pilot.seconds for pilot in done if pilot), default=np.inf))
     # On one element between clamped edges nothing moves.
     for values in fine.values():
         changes(values, search.pilots.want)
@@ -27,17 +32,19 @@ def to_refine(search: Search) -> list[Family]:
     ]
 
 
-def _of_families(search: Search, factor: int) -> dict[Family, Values]:
+def _of_families(search: Search, factor: int, limit: float) -> dict[Family, Values]:
     """Return the wanted quantities of all families on one mesh that reach their end in time."""
     found: dict[Family, Values] = {}
-    cheapest = search.pilots.left / 8
-    rungs = [Rung(family, tuple((factor * x, factor * y) for x, y in search.base)) for family in search.families]
-    for rung in rungs:
-        pilot = search.run(rung, 3 * cheapest + 0.02)
+    for family in search.families:
+        pilot = search.run(_rung(search, family, factor), limit + 0.02)
         if pilot.ok:
-            found[rung.family] = pilot.values
-            cheapest = min(cheapest, pilot.seconds)
+            found[family] = pilot.values
+            limit = min(limit, 3 * pilot.seconds)
     return found
+
+
+def _rung(search: Search, family: Family, factor: int) -> Rung:
+    return Rung(family, tuple((factor * x, factor * y) for x, y in search.base))
 
 
 def _doubt(family: Family, coarse: dict[Family, Values], fine: dict[Family, Values], scale: list[float]) -> float:

@@ -19,6 +19,8 @@ COUNTS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64)
 LOOSEST = 0.1
 """Error control with a larger tolerance controls nothing."""
 
+_PER_STEP, _PER_RTOL = 0.8, 0.3
+"""Powers of the step and of the tolerance of error control with which costs shrink."""
 _FINEST_BASE = 16
 _KEPT = ("until", "newton", "tolerance", "max_iterations")
 """What a motion keeps of the scene when its stepping is chosen."""
@@ -109,6 +111,14 @@ class Stepping:
             return replace(self, step=self.step * factor)
         assert self.rtol is not None
         return replace(self, rtol=self.rtol * factor**2) if self.rtol * factor**2 <= LOOSEST else None
+
+    def lengthening(self, other: Stepping) -> float:
+        """Return about the cost of another one of the same kind, relative to this one."""
+        if self.step is not None and other.step is not None:
+            return float((self.step / other.step) ** _PER_STEP)
+        assert self.rtol is not None
+        assert other.rtol is not None
+        return float((self.rtol / other.rtol) ** _PER_RTOL)
 
     def __str__(self) -> str:
         length = f"step {self.step:.3g} s" if self.step is not None else f"rtol {self.rtol:.2g}"

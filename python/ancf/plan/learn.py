@@ -28,8 +28,10 @@ def learn(search: Search, climb: Climb) -> None:
     what two of them changed has cancelled once.
     """
     rung, last = climb.next, climb.rung
-    values = search.values(rung)
+    values, own = search.values(rung), search.pilots.known(search.choice(rung))
     assert values is not None
+    # A coarser mesh that takes longer has trouble on its way, and tells little.
+    limit = np.inf if own is None else own.seconds + 0.02
     scale = scales(values)
     before = dict(climb.sides)
     refined = [side for side in rung.sides() if last is None or _count(rung, side) > _count(last, side)]
@@ -38,7 +40,7 @@ def learn(search: Search, climb: Climb) -> None:
             half = rung.scaled(side, Fraction(1, 2))
             if half is None:
                 continue
-            pilot = search.run(half)
+            pilot = search.run(half, limit)
             coarse = pilot.values if pilot.ok else None if last is None else search.values(last)
             if coarse is None:
                 continue

@@ -106,6 +106,10 @@ class Pilots:
         """All pilots so far, in their order."""
         return list(self._done.values())
 
+    def tried(self, choice: Choice) -> bool:
+        """Tell whether a choice was run, to its end or not."""
+        return choice in self._done
+
     def known(self, choice: Choice) -> Pilot | None:
         """Return the pilot of a choice if it was run to its end."""
         pilot = self._done.get(choice)

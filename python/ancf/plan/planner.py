@@ -22,7 +22,7 @@ from ancf.plan.pilots import Pilot, Pilots
 from ancf.plan.report import Plan
 from ancf.plan.rigid import RIGID_SHARE, as_rigid
 from ancf.plan.search import Search
-from ancf.plan.symmetry import doubled, halved
+from ancf.plan.symmetry import below, doubled, halved
 from ancf.plan.timing import SHARE, Timing, reference, steppings
 from ancf.run import Dynamic, Static
 from ancf.scene import Scene
@@ -130,8 +130,15 @@ def _asymmetry(pilots: Pilots, found: Plan, mirrors: list[int]) -> float | None:
     whole = pilots.run(replace(choice, rung=rung))
     if not whole.ok:
         return None if pilots.left <= 0.0 else np.inf
+    assert whole.result is not None
+    probes = {probe.name: probe for probe in pilots.scene.model.probes}
+    low = []
+    for name in pilots.want:
+        # Curvatures jump between elements: on a mirror those of the low side are meant.
+        place = below(pilots.scene.model, probes[name], mirrors)
+        low.append(whole.result.evaluate(probes[name].body, [place], probes[name].quantity)[:, 0])
     values = [found.result.probes[name].value for name in pilots.want]
-    return distance(whole.values, values, scales(values))
+    return distance(low, values, scales(values))
 
 
 def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: float, worth: float) -> Plan:
@@ -185,7 +192,7 @@ def _timings(
         exact = reference(pilots, rung, tol)
         if exact.ok:
             changes(exact.values, pilots.want, exact.result)
-            found = steppings(pilots, rung, exact.values, tol)
+            found = steppings(pilots, rung, exact, tol)
             if not found:
                 assert exact.choice.stepping is not None
                 found = [Timing(exact.choice.stepping, SHARE * tol, exact)]

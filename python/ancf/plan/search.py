@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from math import log
 
 import numpy as np
 
@@ -24,14 +25,12 @@ _ALIKE = 2.0
 """Times an estimate that is above the tolerance up to which another one says the same."""
 _ROUNDING = 1e-13
 """Relative differences below it are none."""
-_OTHER = np.log(4.0)
+_OTHER = log(4.0)
 """A pilot of another family says as much of costs as one of the same on a mesh of a quarter of the elements."""
-_LENGTH = np.log(2.0)
+_LENGTH = log(2.0)
 """And one with other steps as much as on a mesh of half of the elements."""
 _TIE = 1.15
 """Times the cheapest up to which the one with the smallest error is taken."""
-_PER_STEP, _PER_RTOL = 0.8, 0.3
-"""Powers of the step and of the tolerance of error control with which costs shrink."""
 
 
 @dataclass
@@ -64,6 +63,8 @@ class Search:
         What tighter steps change of it.
     stepped : Stepping or None
         Than which they are tighter.
+    checked : bool
+        Whether tighter steps were run on any rung that is fine enough; always in statics.
     """
 
     pilots: Pilots
@@ -79,6 +80,7 @@ class Search:
     in_time: float = 0.0
     late: Values | None = None
     stepped: Stepping | None = None
+    checked: bool = False
     _alike: dict[tuple[Family, int, Stepping | None], Pilot | None] = field(default_factory=dict)
     _of_kind: dict[tuple[str, bool, bool] | None, list[Pilot]] = field(default_factory=dict)
     _runs: int = -1
@@ -87,6 +89,7 @@ class Search:
         """Allow the steppings that are good enough; those that replace them are allowed later."""
         self.allowed = [timing.stepping for timing in self.timings]
         self.in_time = max((timing.error for timing in self.timings), default=0.0)
+        self.checked = not self.timings
 
     @property
     def allowance(self) -> float:
@@ -120,7 +123,7 @@ class Search:
         """Take out of what is known best what tighter steps change on a rung; set what is left of the error in time.
 
         Steps that were short enough on the coarse mesh may damp or miss what moves fast on a finer one: they are
-        tightened until that changes little. Where that cannot be run, what was found on the coarse mesh must do.
+        tightened until that changes little. Where that cannot be run nothing is promised.
         """
         if not self.timings:
             return
@@ -134,6 +137,7 @@ class Search:
             tight = self.pilots.run(Choice(rung, stepping))
             if not last.ok or not tight.ok:
                 return
+            self.checked = True
             change = distance(tight.values, last.values, scales(last.values))
             self.late = [after - before for after, before in zip(tight.values, first.values, strict=True)]
             # The limit of stability may set the steps of both: then tighter control tells nothing.
@@ -219,7 +223,7 @@ class Search:
         like = self._like(choice.rung, stepping)
         if like is None or stepping is None or like.choice.stepping is None:
             return None if like is None else self.costs.predict(choice.rung, like)
-        return self.costs.predict(choice.rung, like) * _shortening(like.choice.stepping, stepping)
+        return self.costs.predict(choice.rung, like) * like.choice.stepping.lengthening(stepping)
 
     def values(self, rung: Rung) -> Values | None:
         """Return the wanted quantities of a rung if it has been run, with any stepping that is good enough."""
@@ -229,9 +233,10 @@ class Search:
 
     def observed(self) -> dict[Choice, float]:
         """Return the error of every pilot that reached its end: its distance to `exact` and what that lacks."""
-        scale = scales(self.exact)
+        exact, own = self.exact, self.own
+        scale = scales(exact)
         done = (pilot for pilot in self.pilots.done if pilot.ok)
-        return {pilot.choice: distance(pilot.values, self.exact, scale) + self.own for pilot in done}
+        return {pilot.choice: distance(pilot.values, exact, scale) + own for pilot in done}
 
     def cheapest(self, errors: dict[Choice, float]) -> Pilot | None:
         """Return the cheapest pilot whose error is small enough."""
@@ -257,13 +262,4 @@ def _kind(stepping: Stepping | None) -> tuple[str, bool, bool] | None:
 def _unlike(choice: Choice, rung: Rung, stepping: Stepping | None) -> float:
     """Return how little the cost of a choice says of that of a rung with some steps."""
     differs = _OTHER * (choice.rung.family != rung.family) + _LENGTH * (choice.stepping != stepping)
-    return float(abs(np.log(choice.rung.elements / rung.elements)) + differs)
-
-
-def _shortening(found: Stepping, longer: Stepping) -> float:
-    """Return the cost of longer steps relative to those that were found."""
-    if found.step is not None and longer.step is not None:
-        return float((found.step / longer.step) ** _PER_STEP)
-    assert found.rtol is not None
-    assert longer.rtol is not None
-    return float((found.rtol / longer.rtol) ** _PER_RTOL)
+    return abs(log(choice.rung.elements / rung.elements)) + differs

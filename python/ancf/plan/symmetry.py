@@ -10,11 +10,14 @@ from ancf.bodies import Cylinder, Plate, Rectangle
 from ancf.inputs import Input
 from ancf.loads import Force, LineLoad, Moment
 from ancf.model import Model
+from ancf.probes import Probe
 from ancf.scene import Scene
 from ancf.supports import Axis, Support
 
 _NORMALS: dict[tuple[str, int], Axis] = {("rectangle", 0): "x", ("rectangle", 1): "y", ("cylinder", 1): "z"}
 """Direction in space of a mirror across the middle of a natural coordinate."""
+_BELOW = 1e-9
+"""Part of a side by which a place on a mirror is moved to its low side."""
 
 
 def halved(scene: Scene) -> tuple[Scene, list[int]]:
@@ -140,3 +143,12 @@ def doubled(divisions: tuple[tuple[int, int], ...], halves: Sequence[int]) -> tu
     """Return the divisions of the whole from those of the part."""
     x, y = (2 if axis in halves else 1 for axis in (0, 1))
     return tuple((x * a, y * b) for a, b in divisions)
+
+
+def below(model: Model, probe: Probe, halves: Sequence[int]) -> tuple[float, float]:
+    """Return the place of a probe, just on the low side of the mirrors that it lies on."""
+    place = list(probe.at)
+    for axis in halves:
+        low, high = model.domain(probe.body)[axis]
+        place[axis] = min(place[axis], 0.5 * (low + high) - _BELOW * (high - low))
+    return place[0], place[1]

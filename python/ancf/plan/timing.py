@@ -8,18 +8,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ancf.plan.asked import still
-from ancf.plan.errors import Values, distance, scales
+from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import LOOSEST, Choice, Rung, Stepping
-from ancf.plan.pilots import Pilot, Pilots
+from ancf.plan.pilots import SLOW, Pilot, Pilots
 from ancf.run import Dynamic, Method
 
-FIXED: tuple[Method, ...] = ("hht", "generalized_alpha", "tr_bdf2", "energy_momentum", "esdirk")
-CONTROLLED: tuple[Method, ...] = ("esdirk", "verlet", "hht", "rk", "tr_bdf2")
+FIXED: tuple[Method, ...] = ("esdirk", "hht", "generalized_alpha", "tr_bdf2", "energy_momentum")
+CONTROLLED: tuple[Method, ...] = ("esdirk", "hht", "tr_bdf2", "verlet", "rk")
 
 SHARE = 0.25
 """Part of the tolerance that the error in time may take."""
 _REFERENCE = 0.1
 """Error of the reference in time, relative to that."""
+_FINER = 8.0
+"""Times that its error control is tightened until it does not change."""
 _TIGHTEST = 1e-11
 _FEWEST_STEPS = 12
 _ROUNDS = 11
@@ -80,19 +82,23 @@ def reference(pilots: Pilots, rung: Rung, tol: float) -> Pilot:
     rtol = min(LOOSEST, SHARE * _REFERENCE * tol * _relative(pilots, scale, size))
     best, method = first, first.choice.stepping
     assert method is not None
+    assert method.rtol is not None
+    before = method.rtol
     while pilots.left > 0:
-        finer = pilots.run(Choice(rung, replace(method, rtol=max(rtol, _TIGHTEST))), pilots.left / 4)
+        rtol = max(rtol, _TIGHTEST)
+        finer = pilots.run(Choice(rung, replace(method, rtol=rtol)), pilots.left / 4)
         if not finer.ok:
             return best
-        settled = distance(finer.values, best.values, scale) <= SHARE * tol
-        best = finer
-        if settled or rtol <= _TIGHTEST:
+        # Errors fall at least with the root of the tolerance.
+        left = distance(finer.values, best.values, scale) * np.sqrt(rtol / before)
+        best, before = finer, rtol
+        if left <= SHARE * tol / np.sqrt(_FINER) or rtol <= _TIGHTEST:
             break
-        rtol /= 8
+        rtol /= _FINER
     return best
 
 
-def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Timing]:
+def steppings(pilots: Pilots, rung: Rung, precise: Pilot, tol: float) -> list[Timing]:
     """Find for each method the longest steps, or loosest tolerance, whose error in time is small enough.
 
     Parameters
@@ -101,8 +107,8 @@ def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Tim
         Runs and remembers.
     rung : Rung
         A coarse one.
-    exact : list of ndarray
-        The wanted quantities of this rung without error in time.
+    precise : Pilot
+        This rung without error in time; what is much slower than it is given up.
     tol : float
         Of the plan.
 
@@ -111,17 +117,27 @@ def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Tim
     list of Timing
         Of each method that has one at no more than some times the cost of the cheapest, cheapest first.
     """
+    exact = precise.values
     scale = scales(exact)
     found: list[Timing] = []
+    unstable = False
     for ladder in (*_fixed(pilots), *_controlled(pilots, tol, scale)):
-        index = 0
+        index, last = 0, None
         while index < len(ladder):
             stepping = ladder[index]
+            if stepping.explicit and unstable:
+                break
             index += 1
-            cheapest = min((timing.pilot.seconds for timing in found), default=np.inf)
+            cheapest = min((timing.pilot.seconds for timing in found), default=precise.seconds)
             # An explicit method may be cheaper on a fine mesh, where factorisations cost more than forces.
             patience = 4.0 if stepping.explicit else _PATIENCE
-            pilot = pilots.run(Choice(rung, stepping), min(patience * cheapest + 0.02, pilots.left / 4))
+            limit = patience * cheapest + 0.02
+            if last is not None and last[1] * last[0].lengthening(stepping) > limit:
+                break
+            pilot = pilots.run(Choice(rung, stepping), min(limit, pilots.left / 4))
+            last = stepping, pilot.seconds
+            # What is too slow with the loosest tolerance is so for stability, which is about the same for all.
+            unstable = unstable or (stepping.explicit and index == 1 and pilot.outcome == SLOW)
             if pilot.ok:
                 error = distance(pilot.values, exact, scale)
                 if error <= SHARE * tol:
@@ -131,15 +147,16 @@ def steppings(pilots: Pilots, rung: Rung, exact: Values, tol: float) -> list[Tim
                 # tolerance, are left out.
                 ratio = min(error, 1.0) / (SHARE * tol)
                 index += int(np.log2(ratio) / _ORDER if stepping.step is not None else np.log2(ratio) / 2)
-            if pilots.left <= 0 or pilot.seconds > patience * cheapest + 0.02:
+            if pilots.left <= 0 or pilot.seconds > limit:
                 break
     found.sort(key=lambda timing: timing.pilot.seconds)
     found = [t for explicit in (False, True) for t in [t for t in found if t.stepping.explicit is explicit][:_KEPT]]
     implicit = min((t for t in found if not t.stepping.explicit), key=lambda t: t.pilot.seconds, default=None)
     if implicit is not None:
         kept = replace(implicit.stepping, reuse=True)
-        pilot = pilots.run(Choice(rung, kept), implicit.pilot.seconds)
-        if pilot.ok and pilot.seconds < 0.9 * implicit.pilot.seconds:
+        # On a coarse mesh factorisations cost little: whether keeping them pays shows on finer ones.
+        pilot = pilots.run(Choice(rung, kept), _PATIENCE * implicit.pilot.seconds + 0.02)
+        if pilot.ok:
             error = distance(pilot.values, exact, scale)
             if error <= SHARE * tol:
                 found.append(Timing(kept, error, pilot))

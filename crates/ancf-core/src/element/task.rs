@@ -271,7 +271,7 @@ mod tests {
         block.arch = Arch::Scalar;
         let expected = numbers(&block, &q);
         // A register of four numbers and the widest there is.
-        for elements in [1, usize::MAX] {
+        for elements in [4, usize::MAX] {
             block.arch = arch(elements);
             for (numbers, expected) in numbers(&block, &q).iter().zip(&expected) {
                 let largest = expected.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
