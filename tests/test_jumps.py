@@ -5,7 +5,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from scipy.sparse import coo_array
 from scipy.special import ellipk
 
 import ancf
@@ -174,7 +176,7 @@ def pressed() -> ancf.Model:
         length=(0.0, 3.74),
         divisions=(4, 4),
         thickness=0.0367,
-        material=ancf.Material(E=2.0755e9, nu=0.45),
+        material=ancf.Material(E=2.0755e9, nu=0.45, density=1000.0),
     )
     return ancf.Model(
         bodies={"shell": shape},
@@ -209,6 +211,43 @@ def test_a_pressure_at_free_edges_snaps_a_shell_where_its_whole_tangent_is_lost(
         assert np.linalg.eigvals(tangent).real.min() > 0
         if state == before:
             assert np.linalg.eigvalsh(tangent + tangent.T)[0] < 0
+
+
+def test_a_jump_ends_where_a_damped_motion_does() -> None:
+    """`M dq/dtau = Q_e - Q_k`, disturbed before the jump, by SciPy: to the same equilibrium or its mirror image."""
+    model, t = pressed(), 0.77
+    result = ancf.solve_static(model, load_factors=[0.75, t])
+    assert len(result.jumps) == 1
+    core = model.assemble("ramp")
+    free, before = core.free(), result.q[1]
+    rows, columns, values = core.mass()
+    mass = coo_array((values, (rows, columns)), shape=(len(before), len(before))).toarray()[np.ix_(free, free)]
+
+    def at(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        q: NDArray[np.float64] = before.copy()
+        q[free] = x
+        return q
+
+    def force(x: NDArray[np.float64]) -> NDArray[np.float64]:
+        return (core.external_force(at(x), t) - core.internal_force(at(x)))[free]
+
+    start = before[free] + 1e-3 * np.random.default_rng(0).standard_normal(len(free))
+    motion = solve_ivp(
+        lambda _, x: np.linalg.solve(mass, force(x)),
+        (0.0, 1e10),
+        start,
+        method="BDF",
+        jac=lambda _, x: -np.linalg.solve(mass, whole_tangent(model, at(x), t)),
+        rtol=1e-3,
+        atol=1e-5,
+    )
+    end = motion.y[:, -1]
+    for _ in range(3):
+        end = end + np.linalg.solve(whole_tangent(model, at(end), t), force(end))
+    strain = result.energy.membrane + result.energy.bending
+    np.testing.assert_allclose(sum(core.energy(at(end))), strain[-1], rtol=1e-9)
+    np.testing.assert_allclose(np.abs(at(end) - before).max(), np.abs(result.q[-1] - before).max(), rtol=1e-6)
+    assert np.abs(result.q[-1] - before).max() > 0.2
 
 
 def test_arc_length_tells_where_a_cap_under_pressure_is_lost() -> None:

@@ -2,6 +2,7 @@
 
 use crate::assembly::{Reaction, StrainEnergy, System};
 use crate::error::InputError;
+use crate::linear::Inertia;
 use crate::nonlinear::{Failure, Kept, Reuse, Trial};
 use crate::observe::State;
 use crate::report::{Counts, Rejections};
@@ -125,7 +126,7 @@ impl Checkpoint {
         words.count(usize::from(memory.tangent.is_some()));
         if let (Some(kept), Some(Tangent { values, at })) = (memory.reuse.kept, &memory.tangent) {
             words.numbers(&kept.coefficients);
-            words.count(kept.negative);
+            words.count(kept.inertia.negative);
             words.numbers(values);
             words.numbers(&at.0);
             words.numbers(&at.1);
@@ -187,7 +188,7 @@ impl Checkpoint {
         let mut tangent = None;
         if words.count()? != 0 {
             let coefficients = words.numbers()?.try_into().ok()?;
-            reuse.kept = Some(Kept { coefficients, negative: words.count()? });
+            reuse.kept = Some(Kept { coefficients, inertia: Inertia { negative: words.count()? } });
             tangent = Some(Tangent { values: words.numbers()?, at: (words.numbers()?, words.numbers()?) });
         }
         let memory = Memory { reuse, tangent };

@@ -169,8 +169,8 @@ impl Failure {
                 "the structure buckles or snaps here: a dynamic run with damping follows it; a small disturbing load shows the branch it takes"
             }
             Self::NotSettled { .. } => {
-                "path = \"arc\", or a dynamic run with damping: what the structure goes to here is far, or nowhere (loads that \
-                 follow the surface may make it flutter)"
+                "a finer mesh: a coarse one may be lost where a fine one rests; path = \"arc\", or a dynamic run with damping: \
+                 what the structure goes to here is far, or nowhere (loads that follow the surface may make it flutter)"
             }
             Self::Massless { .. } => "a positive density, or kind = \"static\"",
             Self::ModesNotFound { .. } => {

@@ -1,7 +1,7 @@
 //! Newton's method: plain, with mixed integration points, and modified.
 
 use crate::assembly::System;
-use crate::linear::{dot, gmres};
+use crate::linear::{Inertia, dot, gmres};
 use crate::observe::Observer;
 
 use super::convergence::Convergence;
@@ -34,7 +34,7 @@ pub struct Report {
     /// Largest ratio of a correction, if it is above rounding, to the one before: Newton's method that starts near the
     /// solution has less than one.
     pub growth: f64,
-    /// Negative pivots of the last tangent.
+    /// Negative pivots of the last tangent, those that count.
     pub negative_pivots: usize,
     /// Strain energy of the solution, J.
     pub energy: f64,
@@ -210,12 +210,15 @@ impl Newton {
             if fresh && !finite {
                 return Err(Failure::NotFinite { iteration });
             }
-            let mut negative =
-                self.reuse.kept.map_or_else(|| factorize(system, iteration), |kept| Ok(kept.negative))?;
+            let mut inertia = self.reuse.kept.map_or_else(|| factorize(system, iteration), |kept| Ok(kept.inertia))?;
             // Such a tangent says nothing about the stability of the solution.
-            let firmer = negative > 0 && fresh && extrapolate && problem.stable && iteration <= FIRST_ITERATIONS;
+            let firmer = fresh
+                && extrapolate
+                && problem.stable
+                && iteration <= FIRST_ITERATIONS
+                && system.instabilities(inertia) > 0;
             if firmer {
-                negative = self.bring_in_stress(system, &problem, q, iteration)?;
+                inertia = self.bring_in_stress(system, &problem, q, iteration)?;
             }
             let mut size = f64::INFINITY;
             if finite {
@@ -255,15 +258,20 @@ impl Newton {
             // Where the first factorisation is not trusted, the next one is that has shown to contract.
             let keep = reuse && (trusted || iteration > 1 && contracts) || converged && self.options.reuse;
             let keep = keep || problem.mass == 0.0 && contracts && size <= NEAR && !firmer;
-            self.reuse.kept = keep.then_some(Kept { coefficients, negative });
+            self.reuse.kept = keep.then_some(Kept { coefficients, inertia });
             if converged {
                 if !fresh {
                     self.reuse.served();
                 }
                 // The energy was evaluated one correction before the solution.
                 let energy = strain.total() - dot(&self.correction, &self.forces.internal);
-                let growth = convergence.growth;
-                return Ok(Report { t: problem.t, iterations: iteration, growth, negative_pivots: negative, energy });
+                return Ok(Report {
+                    t: problem.t,
+                    iterations: iteration,
+                    growth: convergence.growth,
+                    negative_pivots: system.instabilities(inertia),
+                    energy,
+                });
             }
         }
         Err(Failure::NotConverged { iterations: max_iterations, correction: convergence.size })
@@ -280,18 +288,18 @@ impl Newton {
         problem: &Problem<'_>,
         q: &[f64],
         iteration: usize,
-    ) -> Result<usize, Failure> {
-        let mut negative = 0;
+    ) -> Result<Inertia, Failure> {
+        let mut inertia = Inertia { negative: 0 };
         for share in ACTUAL {
             let part = (1.0_f64 - share).sqrt();
             let previous: Vec<f64> = q.iter().zip(&self.previous).map(|(q, p)| q - part * (q - p)).collect();
             self.forces.evaluate(system, problem, q, Some(Tangent { previous: Some(&previous) }));
-            negative = factorize(system, iteration)?;
-            if negative == 0 {
+            inertia = factorize(system, iteration)?;
+            if system.instabilities(inertia) == 0 {
                 break;
             }
         }
-        Ok(negative)
+        Ok(inertia)
     }
 
     /// Corrects for what the assembled tangent of mean forces lacks: strains change along `B` at the end of the step, not at
@@ -308,12 +316,9 @@ impl Newton {
     }
 }
 
-/// Factorises the tangent of an iteration and returns its number of negative pivots, those that count.
-fn factorize(system: &mut System, iteration: usize) -> Result<usize, Failure> {
-    match system.factorize() {
-        Ok(inertia) => Ok(system.instabilities(inertia)),
-        Err(error) => Err(Failure::from_linear(error, iteration, |row| system.describe(row))),
-    }
+/// Factorises the tangent of an iteration.
+fn factorize(system: &mut System, iteration: usize) -> Result<Inertia, Failure> {
+    system.factorize().map_err(|error| Failure::from_linear(error, iteration, |row| system.describe(row)))
 }
 
 /// Changes a correction so that it keeps the coordinates in the plane with the given normal, and returns the change of the

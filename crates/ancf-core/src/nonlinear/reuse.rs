@@ -1,5 +1,7 @@
 //! When a factorisation serves further iterations and solutions.
 
+use crate::linear::Inertia;
+
 /// Most solutions that pass between two trials.
 const LONGEST: usize = 32;
 
@@ -8,8 +10,7 @@ const LONGEST: usize = 32;
 pub(crate) struct Kept {
     /// The factors of inertia and stiffness, and the rate of the velocities, that it was made with.
     pub coefficients: [f64; 3],
-    /// Negative pivots.
-    pub negative: usize,
+    pub inertia: Inertia,
 }
 
 /// A trial that is made the less often, the more often it failed in a row.
@@ -92,7 +93,7 @@ mod tests {
         let coefficients = [1.0; 3];
         let mut reuse = Reuse::default();
         let mut solve = |serves: bool| {
-            reuse.kept = Some(Kept { coefficients, negative: 0 });
+            reuse.kept = Some(Kept { coefficients, inertia: Inertia { negative: 0 } });
             reuse.begin(true, coefficients);
             let tried = reuse.kept.is_some();
             if serves {
@@ -105,7 +106,7 @@ mod tests {
         let tried = (0..200).filter(|_| solve(false)).count();
         assert!((8..=12).contains(&tried), "{tried}");
         assert!((0..LONGEST + 1).any(|_| solve(true)) && (0..10).all(|_| solve(true)));
-        reuse.kept = Some(Kept { coefficients, negative: 0 });
+        reuse.kept = Some(Kept { coefficients, inertia: Inertia { negative: 0 } });
         reuse.begin(true, [2.0; 3]);
         assert_eq!(reuse.kept, None, "other coefficients make another tangent");
     }
