@@ -545,6 +545,22 @@ def test_a_pulse_between_the_moments_of_a_rigid_motion_bends_it() -> None:
     assert max(bent) > 0.1
 
 
+def test_a_deflection_says_nothing_about_velocities() -> None:
+    """A sheet that hangs by two corners and falls oscillates: its velocity is 0.05 off that of the rigid one."""
+    alu = ancf.Material(E=7e10, nu=0.33, density=2700.0)
+    sheet = ancf.Rectangle(size=(0.5, 0.5), divisions=(8, 8), thickness=1e-3, material=alu, element="thin48")
+    held = [ancf.Support(at=corner, fix=["r"]) for corner in ("corner:x0y0", "corner:x0y1")]
+    probe = ancf.Probe(name="v", at=(0.5, 0.25), quantity="velocity")
+    model = ancf.Model(bodies={"sheet": sheet}, supports=held, loads=[WEIGHT], probes=[probe])
+    run = ancf.Dynamic(until=0.3, step=1e-3, every=0.01)
+    pilot, bent = as_rigid(pilots.Pilots(ancf.Scene("", model, run), ["v"], np.inf, 1), ((1, 1),), THIN[0], 0.1)
+    assert pilot is not None
+    elastic = ancf.simulate(model, until=0.3, rtol=1e-4, every=0.01, method="esdirk")
+    error = distance([elastic.probes["v"].value], pilot.values, scales(pilot.values))
+    assert error > 0.04
+    assert max(bent) > 0.5 * error
+
+
 def test_rigid_motions_are_as_precise_in_time_as_asked() -> None:
     gutter = ancf.Cylinder(
         radius=0.3, angle=(0.0, 3.0), length=(0.0, 0.4), divisions=(6, 4), thickness=3e-3, material=STEEL

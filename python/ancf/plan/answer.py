@@ -50,7 +50,8 @@ def of_search(
         )
     if in_space + in_time > tol:
         slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
-        finer = [p for p in pilots.done if not p.ok and p.choice.rung.elements > finest.elements and p.outcome != SLOW]
+        failed = [p for p in pilots.done if not p.ok and p.outcome != SLOW and p.choice.rung.family != RIGID]
+        finer = [p for p in failed if p.choice.rung.elements > finest.elements]
         if pilots.interrupted:
             why = "the plan was interrupted"
         elif finer:

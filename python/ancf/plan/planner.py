@@ -149,7 +149,7 @@ def _flexible(pilots: Pilots, allowed: tuple[Family, ...], costs: Costs, tol: fl
     search = Search(pilots, costs, allowed, base, tol, timings)
     try:
         if not Ascent(search).up(to_refine(search)):
-            raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
+            raise _none(pilots)
         descent = Descent(search, worth)
         descent.down()
         _choose(search)
@@ -197,8 +197,11 @@ def _timings(
                 assert exact.choice.stepping is not None
                 found = [Timing(exact.choice.stepping, SHARE * tol, exact)]
             return found
-    raise InputError(Mistake(("scene",), f"no pilot reached its end within the budget: {_last_words(pilots)}"))
+    raise _none(pilots)
 
 
-def _last_words(pilots: Pilots) -> str:
-    return pilots.done[-1].outcome if pilots.done else "none was made"
+def _none(pilots: Pilots) -> InputError:
+    """Return why nothing can be said at all."""
+    outcome = pilots.done[-1].outcome if pilots.done else "none was made"
+    text = f"no pilot reached its end within the budget, {outcome}; a larger budget may help"
+    return InputError(Mistake(("scene",), text))

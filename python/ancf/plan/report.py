@@ -137,6 +137,8 @@ class Plan:
         sentence = f"The scene as it was written would take about {written:.2g} s"
         if written <= run:
             return f"{sentence}, less than what the tolerance needs."
+        if not self.converged:
+            return f"{sentence}."
         # The run of the choice was one of the pilots.
         runs = max(1, math.ceil((self.seconds - run) / (written - run)))
         return f"{sentence}: the plan has paid for itself after {runs} run{'' if runs == 1 else 's'}."

@@ -23,6 +23,8 @@ _REFERENCE = 0.1
 _FINER = 8.0
 """Times that its error control is tightened until it does not change."""
 _TIGHTEST = 1e-11
+_MESHES = 0.5
+"""Part of the time left that is for meshes."""
 _FEWEST_STEPS = 12
 _ROUNDS = 11
 _ORDER = 3
@@ -120,6 +122,7 @@ def steppings(pilots: Pilots, rung: Rung, precise: Pilot, tol: float) -> list[Ti
     exact = precise.values
     scale = scales(exact)
     found: list[Timing] = []
+    least = _MESHES * pilots.left if np.isfinite(pilots.left) else 0.0
     unstable = False
     for ladder in (*_fixed(pilots), *_controlled(pilots, tol, scale)):
         index, last = 0, None
@@ -147,19 +150,21 @@ def steppings(pilots: Pilots, rung: Rung, precise: Pilot, tol: float) -> list[Ti
                 # tolerance, are left out.
                 ratio = min(error, 1.0) / (SHARE * tol)
                 index += int(np.log2(ratio) / _ORDER if stepping.step is not None else np.log2(ratio) / 2)
-            if pilots.left <= 0 or pilot.seconds > limit:
+            if pilots.left <= least or pilot.seconds > limit:
                 break
+        if pilots.left <= least:
+            break
     found.sort(key=lambda timing: timing.pilot.seconds)
     found = [t for explicit in (False, True) for t in [t for t in found if t.stepping.explicit is explicit][:_KEPT]]
     implicit = min((t for t in found if not t.stepping.explicit), key=lambda t: t.pilot.seconds, default=None)
     if implicit is not None:
-        kept = replace(implicit.stepping, reuse=True)
+        reused = replace(implicit.stepping, reuse=True)
         # On a coarse mesh factorisations cost little: whether keeping them pays shows on finer ones.
-        pilot = pilots.run(Choice(rung, kept), _PATIENCE * implicit.pilot.seconds + 0.02)
+        pilot = pilots.run(Choice(rung, reused), _PATIENCE * implicit.pilot.seconds + 0.02)
         if pilot.ok:
             error = distance(pilot.values, exact, scale)
             if error <= SHARE * tol:
-                found.append(Timing(kept, error, pilot))
+                found.append(Timing(reused, error, pilot))
     found.sort(key=lambda timing: timing.pilot.seconds)
     return found
 
