@@ -120,6 +120,16 @@ def test_explicit_steps_near_their_limit_stay_equal_between_outputs(states: int)
     np.testing.assert_allclose(found, known, rtol=0, atol=5e-3 * np.abs(known - known[0]).max())
 
 
+def test_outputs_may_shorten_steps_below_the_shortest_that_the_tolerance_may_need() -> None:
+    """Outputs at 2.4 times the length of a step: some are shorter than `min_step`, for no need of accuracy."""
+    steps = ancf.simulate(pendulum(8), until=0.05, rtol=0.1, method="verlet", outputs=[0.05]).counts["steps"]
+    step = 0.05 / steps
+    result = ancf.simulate(
+        pendulum(8), until=0.05, rtol=0.1, method="verlet", every=2.4 * step, min_step=0.9 * step, throw=False
+    )
+    assert result.status == "ok", result.reason
+
+
 @pytest.mark.parametrize(
     ("element", "shape"),
     [*product(["thin36", "thin48"], ["rectangle", "cylinder"]), ("full48a", "rectangle"), ("full48b", "rectangle")],

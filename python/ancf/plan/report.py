@@ -121,7 +121,7 @@ class Plan:
             outcome = "" if row.outcome == "ok" else f"  {row.outcome}"
             lines.append(f"{mark} {row.settings:{width}}  {numbers}{outcome}")
         wants = ", ".join(f"{name} {size:.4g}" for name, size in self.scale.items())
-        lines.append(f"* {self.choice}")
+        lines.append(f"Chosen: {self.choice}")
         lines += [f"  {reason}" for reason in self.reasons]
         lines.append(f"  Errors are relative to the largest change of what is wanted: {wants}. Tolerance {self.tol:g}.")
         chosen = f"{self.rows[self.chosen].seconds:.2g} s (predicted {self.predicted_seconds:.2g} s)"

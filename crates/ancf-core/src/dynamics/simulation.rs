@@ -245,8 +245,9 @@ impl<'a> Simulation<'a> {
                 step.min(0.5 * left).max(step.min(left - step))
             };
             self.next.t = if h == left { target } else { self.now.t + h };
-            if h < tolerances.min_step.min(left) || self.next.t <= self.now.t {
-                return Err(Failure::StepTooSmall { t: self.now.t, step: h, cause });
+            // Only what ends at an output may be shorter than the shortest.
+            if step < tolerances.min_step.min(left) || self.next.t <= self.now.t {
+                return Err(Failure::StepTooSmall { t: self.now.t, step, cause });
             }
             match self.try_step(observer) {
                 Ok(()) => {
