@@ -5,6 +5,7 @@
 //! `lanczos` finds. The negative pivots of `K - tau M`, with `tau` above them, count what lies below: none is missed.
 
 mod lanczos;
+mod scale;
 
 use std::time::Instant;
 
@@ -12,12 +13,12 @@ use crate::assembly::System;
 use crate::element::Want;
 use crate::error::InputError;
 use crate::linear::{Inertia, LinearError, SymmetricMatrix};
-use crate::model::Body;
 use crate::nonlinear::Failure;
 use crate::observe::Observer;
 use crate::report::{Counts, Outcome, Run, Seconds};
 
 use lanczos::{Lanczos, Ritz};
+use scale::{bending, rounding};
 
 /// Which modes to find.
 #[derive(Clone, Debug)]
@@ -130,7 +131,7 @@ impl<'a> Search<'a> {
         let (mass, stiffness) = (matrix(1.0, 0.0), matrix(0.0, 1.0));
         let at = system.tangent_at().clone();
         let rigid = system.model().rigid_motions(&options.q).len();
-        let shift = bending_scale(system);
+        let shift = bending(system);
         let lanczos = Lanczos::new(system);
         let (count, converged) = (options.count, Vec::new());
         let mut search = Self { system, count, stiffness, mass, at, rigid, shift, lanczos, converged };
@@ -224,7 +225,7 @@ impl<'a> Search<'a> {
         let good = |pair: &&Ritz| {
             pair.residual <= PRECISION * pair.value || {
                 let vector = self.lanczos.vector(pair);
-                pair.residual <= FLOOR * self.rounding(&vector) * pair.value * pair.value
+                pair.residual <= FLOOR * rounding(self.system, &self.stiffness, &vector) * pair.value * pair.value
             }
         };
         pairs.iter().take_while(good).count()
@@ -253,25 +254,6 @@ impl<'a> Search<'a> {
         inertia.negative.checked_sub(below).ok_or(Failure::ModesNotFound { found: inertia.negative, count: below })
     }
 
-    /// The unit in which rounding of the stiffness changes an eigenvalue, `eps |x| . |K| |x|`.
-    ///
-    /// Rounded strains are membrane forces, which hold a surface across it as well, where a flat body at rest has but the
-    /// small stiffness of bending. So the length of a nodal vector stands for each of its components.
-    fn rounding(&self, shape: &[f64]) -> f64 {
-        let length = |vector: usize| shape[3 * vector..][..3].iter().map(|x| x * x).sum::<f64>().sqrt();
-        let free: Vec<f64> = self.system.free().iter().map(|coordinate| length(coordinate / 3)).collect();
-        let (pattern, values) = (self.stiffness.pattern(), self.stiffness.values());
-        let mut sum = 0.0;
-        for column in 0..pattern.n() {
-            let start = pattern.col_ptr()[column];
-            for (k, &row) in pattern.rows(column).iter().enumerate() {
-                let twice = if row == column { 1.0 } else { 2.0 };
-                sum += twice * values[start + k].abs() * free[row] * free[column];
-            }
-        }
-        f64::EPSILON * sum
-    }
-
     /// The modes that have converged.
     ///
     /// Of eigenvalues within rounding those of rigid motions are zero, the smallest, and what is negative: bending of a very thin
@@ -279,7 +261,8 @@ impl<'a> Search<'a> {
     fn modes(&self) -> Vec<Mode> {
         let mode = |ritz: &Ritz| Mode { eigenvalue: self.eigenvalue(ritz), shape: self.lanczos.vector(ritz) };
         let mut modes: Vec<Mode> = self.converged.iter().map(mode).collect();
-        let rounded = |mode: &&mut Mode| mode.eigenvalue.abs() <= ZERO * self.rounding(&mode.shape);
+        let rounded =
+            |mode: &&mut Mode| mode.eigenvalue.abs() <= ZERO * rounding(self.system, &self.stiffness, &mode.shape);
         let mut rounded: Vec<&mut Mode> = modes.iter_mut().filter(rounded).collect();
         rounded.sort_by(|a, b| a.eigenvalue.abs().total_cmp(&b.eigenvalue.abs()));
         for (place, mode) in rounded.into_iter().enumerate() {
@@ -305,24 +288,4 @@ impl<'a> Search<'a> {
         }
         Ok(())
     }
-}
-
-/// Squared circular frequency of slow bending: about that of the first mode of a free square plate, of the body with the
-/// lowest. The diagonal of the box around a body stands for its side.
-fn bending_scale(system: &System) -> f64 {
-    let model = system.model();
-    let of_body = |body: &Body| {
-        let positions = (0..body.grid().nodes()).map(|node| &model.reference()[3 * body.vector(node, 0)..][..3]);
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for position in positions {
-            for c in 0..3 {
-                (low[c], high[c]) = (low[c].min(position[c]), high[c].max(position[c]));
-            }
-        }
-        let square: f64 = (0..3).map(|c| (high[c] - low[c]).powi(2)).sum();
-        let (material, h) = (&body.plate().material, body.plate().thickness);
-        let rigidity = material.plane_stress([1.0, 1.0, 0.0])[0][0] * h * h / 12.0;
-        100.0 * rigidity / (material.density() * square * square)
-    };
-    model.bodies().iter().map(of_body).fold(f64::INFINITY, f64::min)
 }
