@@ -7,7 +7,7 @@ use crate::mesh::End;
 use crate::model::{History, LoadKind, Model};
 use crate::quadrature::Rule;
 
-use super::follower::Follower;
+use super::follower::{Follower, Moment, Pressure};
 
 /// A load that does not depend on the state.
 struct Dead {
@@ -15,16 +15,23 @@ struct Dead {
     force: Vec<f64>,
 }
 
+/// A load that depends on the state of a block.
+struct Following {
+    block: usize,
+    history: History,
+    load: Box<dyn Follower>,
+}
+
 /// All loads of a model. They are applied to its elements `blocks`, with its nodal coordinates `reference` at rest.
 pub(super) struct Loads {
     dead: Vec<Dead>,
-    followers: Vec<Follower>,
+    following: Vec<Following>,
 }
 
 impl Loads {
     /// The loads of a model, whose nodal vectors stand for the masses `weight` in a uniform field.
     pub fn new(model: &Model, blocks: &[Box<dyn ElementBlock>], weight: &[f64]) -> Self {
-        let mut loads = Self { dead: Vec::new(), followers: Vec::new() };
+        let mut loads = Self { dead: Vec::new(), following: Vec::new() };
         let reference = model.reference();
         for load in model.loads() {
             let history = load.history.clone();
@@ -60,13 +67,15 @@ impl Loads {
                     let (block, grid, element) =
                         (body.index(), model.body(body).grid(), model.body(body).plate().element);
                     let elements = blocks[block].as_ref();
-                    loads.followers.push(Follower::moment(block, element, elements, grid, edge, per_length, history));
+                    let load = Box::new(Moment::new(element, elements, grid, edge, per_length));
+                    loads.following.push(Following { block, history, load });
                     continue;
                 }
                 LoadKind::Pressure { body, pressure } => {
                     let (block, grid) = (body.index(), model.body(body).grid());
                     let elements = blocks[block].as_ref();
-                    loads.followers.push(Follower::pressure(block, elements, grid, pressure, history));
+                    let load = Box::new(Pressure::new(elements, grid, pressure));
+                    loads.following.push(Following { block, history, load });
                     continue;
                 }
             }
@@ -91,19 +100,19 @@ impl Loads {
                 *sum += factor * f;
             }
         }
-        for load in &self.followers {
-            load.add_force(blocks[load.block].as_ref(), reference, q, factor(&load.history), force);
+        for Following { block, history, load } in &self.following {
+            load.add_force(blocks[*block].as_ref(), reference, q, factor(history), force);
         }
     }
 
     /// The factor of each follower at `t`.
     pub fn follower_factors(&self, t: f64) -> impl Iterator<Item = f64> {
-        self.followers.iter().map(move |load| load.history.factor(t))
+        self.following.iter().map(move |following| following.history.factor(t))
     }
 
     /// Whether any load follows the surface.
     pub fn follow(&self) -> bool {
-        !self.followers.is_empty()
+        !self.following.is_empty()
     }
 
     /// Subtracts the symmetric half of the followers' stiffness, each times its factor, from the tangents of elements of
@@ -118,9 +127,17 @@ impl Loads {
         portion: &mut Portion<'_>,
     ) {
         let size = portion.tangent.len() / portion.elements.len();
-        for (load, &factor) in self.followers.iter().zip(factors).filter(|(load, _)| load.block == block) {
+        for (following, &factor) in self.following.iter().zip(factors).filter(|(following, _)| following.block == block)
+        {
             for (&element, tangent) in portion.elements.iter().zip(portion.tangent.chunks_exact_mut(size)) {
-                load.subtract_stiffness(blocks[block].as_ref(), element as usize, reference, q, factor, tangent);
+                following.load.subtract_stiffness(
+                    blocks[block].as_ref(),
+                    element as usize,
+                    reference,
+                    q,
+                    factor,
+                    tangent,
+                );
             }
         }
     }
@@ -134,8 +151,8 @@ impl Loads {
         x: &[f64],
         y: &mut [f64],
     ) {
-        for (load, factor) in self.followers.iter().zip(factors) {
-            load.add_skew_times(blocks[load.block].as_ref(), reference, q, -factor, x, y);
+        for (Following { block, load, .. }, factor) in self.following.iter().zip(factors) {
+            load.add_skew_times(blocks[*block].as_ref(), reference, q, -factor, x, y);
         }
     }
 
@@ -156,18 +173,17 @@ impl Loads {
         let along = |force: &[f64], p: &[f64]| force.iter().zip(p).map(|(f, p)| f * p).sum::<f64>();
         let straight: Vec<f64> = q0.iter().zip(q1).map(|(a, b)| b - a).collect();
         let dead = self.dead.iter().map(|load| load.history.factor(t) * along(&load.force, &straight));
-        let followers = self.followers.iter().map(|load| {
+        let following = self.following.iter().map(|Following { block, history, load }| {
             let [start, end] = [q0, q1].map(|q| {
                 let mut force = vec![0.0; q.len()];
-                let elements = blocks[load.block].as_ref();
-                load.add_force(elements, reference, q, load.history.factor(t), &mut force);
+                load.add_force(blocks[*block].as_ref(), reference, q, history.factor(t), &mut force);
                 force
             });
             let mean = 0.5 * (along(&start, &straight) + along(&end, &straight));
             let (a, b) = (along(&start, p0), along(&end, p1));
             mean.clamp(a.min(b), a.max(b))
         });
-        dead.chain(followers).sum()
+        dead.chain(following).sum()
     }
 }
 

@@ -136,7 +136,13 @@ impl Scatter {
         energy.clear();
         rates.clear();
         let mut slots = part.slots.as_slice();
-        *time = [Duration::ZERO, if tangents { start.elapsed() } else { Duration::ZERO }];
+        *time = [Duration::ZERO; 2];
+        if tangents {
+            // Of the sum, not of the elements that follow.
+            let cleared = Instant::now();
+            time[1] = cleared - start;
+            start = cleared;
+        }
         for (block, elements) in part.elements.iter().enumerate() {
             let (mut block_energy, mut block_rates) = ([0.0; 2], [0.0; 2]);
             evaluate(block, elements, &mut |portion| {

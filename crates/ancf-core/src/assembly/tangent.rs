@@ -62,26 +62,33 @@ fn add_whole<S: Simd, const SIDE: usize>(
     target: &mut [f64],
 ) {
     let pair: &[[f64; SIDE]; SIDE] = pair.as_chunks().0.try_into().expect("a square");
-    let begin = offset.map_or(0, |offset| SIDE + offset);
-    if transposed {
-        add_columns(simd, early.length as usize, &Transpose::new(simd).square(pair), &mut target[begin..]);
-    } else {
-        add_columns(simd, early.length as usize, pair, &mut target[begin..]);
+    let length = early.length as usize;
+    match offset.map(|offset| &mut target[SIDE + offset..]) {
+        None => add_columns::<S, SIDE, true>(simd, length, pair, target),
+        Some(below) if transposed => {
+            add_columns::<S, SIDE, false>(simd, length, &Transpose::new(simd).square(pair), below);
+        }
+        Some(below) => add_columns::<S, SIDE, false>(simd, length, pair, below),
     }
 }
 
 /// Adds the columns of a block to those of a node, of which the first has `length` entries.
 #[inline(always)]
-fn add_columns<S: Simd, const SIDE: usize>(
+fn add_columns<S: Simd, const SIDE: usize, const DIAGONAL: bool>(
     simd: S,
     length: usize,
     block: &[[f64; SIDE]; SIDE],
     mut target: &mut [f64],
 ) {
     for (j, column) in block.iter().enumerate() {
-        // What lies above the diagonal is zero, and may be added to the end of the column before.
         let entries = target.first_chunk_mut::<SIDE>().expect("rows of the node");
-        add(simd, entries, column);
+        // What lies above the diagonal is zero, and may be added to the end of the column before; no more of it than fills
+        // registers of four numbers.
+        match SIDE - j {
+            ..=4 if DIAGONAL => add(simd, &mut entries[SIDE - 4..], &column[SIDE - 4..]),
+            ..=8 if DIAGONAL => add(simd, &mut entries[SIDE - 8..], &column[SIDE - 8..]),
+            _ => add(simd, entries, column),
+        }
         if j + 1 < SIDE {
             target = &mut target[length - j - 1..];
         }

@@ -33,6 +33,8 @@ pub(super) struct Simulation<'a> {
     kinks: Vec<f64>,
     /// The last state in which a fixed explicit step was found stable, and the steps up to there.
     stable: Option<(Instantaneous, usize)>,
+    /// Controlled steps without a solution, and the time since which they are counted.
+    unsolved: (f64, usize),
     /// What belongs to the state `now` in a checkpoint, when checkpoints are wanted: a step that is being tried has
     /// changed the present ones already.
     accepted: (Controller, Memory, Counts),
@@ -64,6 +66,7 @@ impl<'a> Simulation<'a> {
             allowed,
             kinks,
             stable: None,
+            unsolved: (0.0, 0),
             accepted: (Controller::new(0.0), Memory::default(), Counts::default()),
             counts: Counts::default(),
             earlier,

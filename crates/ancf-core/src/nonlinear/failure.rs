@@ -160,7 +160,8 @@ impl Failure {
             }
             Self::Singular { .. } => {
                 "check the supports near that place and the units; a structure at its limit load needs displacement \
-                 control or a dynamic run"
+                 control or a dynamic run; what has moved well so far collapses there: spread a support or load at a \
+                 point, membrane = \"full\" in soft stretching motion"
             }
             Self::BelowRounding { .. } => "a tolerance above the correction that was reached",
             Self::Unsupported { .. } => "supports that hold these motions, or kind = \"dynamic\" for a free body",
@@ -193,7 +194,8 @@ impl Failure {
             }
             Self::StepTooSmall { .. } => {
                 "an element may have collapsed or a load may be too large to be carried: check loads, thickness and \
-                 units, refine the mesh where it bends most, add damping"
+                 units, spread a support or load at a point, refine the mesh where it bends most, add damping, \
+                 membrane = \"full\" in soft stretching motion"
             }
             Self::TooLarge => "a coarser mesh",
             Self::Stopped => "run it again; a motion with a checkpoint goes on from there",

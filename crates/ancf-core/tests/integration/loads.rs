@@ -288,6 +288,41 @@ fn followers_add_the_symmetric_part_of_their_derivative() {
     }
 }
 
+/// Solutions are those of the whole tangent: the skew part of the derivative of followers is in them.
+#[test]
+fn solutions_are_those_of_the_whole_tangent() {
+    for element in Kind::ALL {
+        for edge in [None, Some("edge:x1"), Some("edge:y0"), Some("edge:y1")] {
+            let variant = Plate { element, membrane: None, ..plate(1e3, 0.3, 50.0, 0.1, Membrane::Full) };
+            let (mut model, body) = rectangle(SIZE, [2, 1], variant);
+            model.clamp(body, "edge:x0".parse().unwrap()).unwrap();
+            let load = match edge {
+                None => LoadKind::Pressure { body, pressure: 0.1 },
+                Some(edge) => {
+                    let edge = Model::edge_at(edge.parse().unwrap()).unwrap();
+                    LoadKind::Moment { body, edge, per_length: 0.003 }
+                }
+            };
+            add_ramp(&mut model, load);
+            let mut system = system(model);
+            let q = random_state(system.model(), 1e-2, &mut Random(13));
+            let derivatives = load_stiffness(&system, &q, 1.0);
+            let skew = -0.5 * (&derivatives - derivatives.transpose());
+            let whole = tangent(&mut system, &q, 1.0) + &skew;
+            system.factorize().unwrap();
+            let right = Random(14).vector(q.len());
+            let mut solution = vec![0.0; right.len()];
+            system.solve(&right, &mut solution);
+            let free = |x: &[f64]| DVector::from_iterator(system.free().len(), system.free().iter().map(|&i| x[i]));
+            let (right, solution) = (free(&right), free(&solution));
+            let missing = (&whole * &solution - &right).amax() / right.amax();
+            let part = (&skew * &solution).amax() / right.amax();
+            // GMRES stops at 1e-8 of the solution, which a stiff membrane multiplies.
+            assert!(part > 1e-3 && missing < 1e-3 * part, "{element:?}, {edge:?}: {missing:e} of {part:e}");
+        }
+    }
+}
+
 /// Under a pressure the symmetric half of the tangent of a plate with free edges has negative pivots where the whole tangent
 /// still has a positive determinant: the plate is stable there, and is told to be.
 #[test]

@@ -5,6 +5,11 @@ use crate::dynamics::control::Tolerances;
 use crate::nonlinear::Failure;
 use crate::observe::Observer;
 
+/// Steps without a solution in a short part of the duration, after which the motion is stuck: where an element collapses
+/// short steps find solutions, which lead nowhere.
+const MOST_UNSOLVED: usize = 40;
+const SHORT: f64 = 1e-3;
+
 impl Simulation<'_> {
     /// The next kink, if any.
     pub(super) fn next_kink(&self) -> Option<f64> {
@@ -64,6 +69,12 @@ impl Simulation<'_> {
                     self.controller.cut(h);
                     self.counts.rejected.count(&failure);
                     cause = Some(Box::new(failure));
+                    let (since, unsolved) = self.unsolved;
+                    let near = self.now.t - since <= SHORT * self.options.until;
+                    self.unsolved = if near { (since, unsolved + 1) } else { (self.now.t, 1) };
+                    if self.unsolved.1 > MOST_UNSOLVED {
+                        return Err(Failure::StepTooSmall { t: self.now.t, step: self.controller.step, cause });
+                    }
                 }
             }
         }
