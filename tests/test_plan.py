@@ -400,6 +400,20 @@ def test_a_pilot_that_slides_and_jumps_ends_when_its_time_is_up() -> None:
     assert "--budget" in " ".join(plan.reasons)
 
 
+def test_a_chaotic_motion_gets_a_plan_that_promises_nothing() -> None:
+    """A free sheet of paper, flicked at a corner: shorter steps change its motion, so that none is good enough."""
+    paper = ancf.Material(E=2.5e9, nu=0.25, density=750.0)
+    sheet = ancf.Rectangle(size=(0.297, 0.21), divisions=(8, 6), thickness=3e-4, material=paper)
+    flick = ancf.Force(at="corner:x1y1", force=(0.0, 0.0, 1.0), history=[(0.0, 0.0), (0.01, 1.0), (0.02, 0.0)])
+    probes = [ancf.Probe(name="A", at=(0.297, 0.21))]
+    model = ancf.Model(bodies={"sheet": sheet}, loads=[flick], probes=probes)
+    plan = ancf.plan(model, run=ancf.Dynamic(until=0.15, step=5e-4, every=0.005), tol=1e-2, budget=3.0, threads=1)
+    assert not plan.converged
+    assert plan.error + plan.error_in_time > 0.1
+    assert plan.result.reached == 0.15
+    assert "The estimates do not reach the tolerance" in " ".join(plan.reasons)
+
+
 def test_one_element_between_clamped_edges_does_not_move_and_is_left_out() -> None:
     ends = [ancf.Support(at=f"edge:x{end}", clamp=True) for end in (0, 1)]
     # Without symmetry, of which half an element would be free.

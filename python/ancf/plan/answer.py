@@ -31,6 +31,8 @@ def of_search(
     errors = search.observed()
     converged = search.checked and in_space + in_time <= tol
     reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.2g}."]
+    if in_space + in_time > tol:
+        reasons[0] = f"{chosen.choice.rung} is the best rung found, with an error of {in_space:.2g}."
     if chosen.choice.rung == finest:
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
     if chosen.choice.stepping is not None:
@@ -40,10 +42,13 @@ def of_search(
         )
     axes = "xy"
     names = list(pilots.scene.model.bodies)
+    refined = []
     for (body, axis), side in search.sides.items():
         where = f"{names[body]}, {axes[axis]}" if len(names) > 1 else axes[axis]
         rate = "unknown" if side.rate is None else f"{side.rate:.1f}"
-        reasons.append(f"Refining {finest} along {where} changed {side.difference:.1g}, rate {rate}.")
+        refined.append(f"along {where} changed {side.difference:.1g}, rate {rate}")
+    if refined:
+        reasons.append(f"Errors are told from {finest}, the best that is known: refining it {'; '.join(refined)}.")
     if not search.checked:
         reasons.append(
             "Nothing is promised: steps are known on a coarse mesh only, shorter ones did not end on finer ones."
@@ -60,8 +65,9 @@ def of_search(
             why = "differences hardly shrink with the mesh, as at a singular point or where the motion is chaotic"
         else:
             why = "the budget (--budget) or the largest mesh was reached"
+        told_error = "Promised is" if search.checked else "What was run suggests"
         reasons.append(
-            f"The estimates do not reach the tolerance: {why}. Promised is an error of {in_space + in_time:.2g}."
+            f"The estimates do not reach the tolerance: {why}. {told_error} an error of {in_space + in_time:.2g}."
         )
     threads = search.costs.threads(chosen.choice)
     if pilots.threads != 1:

@@ -10,6 +10,8 @@ from ancf.probes import QUANTITIES
 from ancf.text import plain_text
 
 _STYLES = ("-", "--", ":")
+_DECADES = 100.0
+"""Longer axes have labels at powers of ten only."""
 _ROUNDING = 1e-16
 """Errors that are smaller, or none, are drawn here: the axis is logarithmic."""
 
@@ -41,14 +43,16 @@ def draw(plan: Plan) -> Figure:
         if row.error is not None:
             error = max(row.error, _ROUNDING)
             left.loglog(row.seconds, error, "o", markersize=11, fillstyle="none", color="black", label="chosen")
-        left.axhline(plan.tol, color="gray", linewidth=1)
+        left.axhline(plan.tol, color="gray", linewidth=1, label="tolerance")
         for axis in (left.xaxis, left.yaxis):
-            axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0), numticks=8))
+            low, high = axis.get_view_interval()
+            subs = (1.0, 2.0, 5.0) if high < _DECADES * low else (1.0,)
+            axis.set_major_locator(LogLocator(subs=subs, numticks=8))
             axis.set_major_formatter(lambda value, _: f"{value:g}")
             axis.set_minor_locator(NullLocator())
         left.set_xlabel("time of the run / s")
         left.set_ylabel("estimated error, relative")
-        left.legend(fontsize="small", frameon=False)
+        left.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
         probes = [probe for probe in plan.scene.model.probes if probe.name in plan.scale]
         for index, probe in enumerate(probes):
             record = plan.result.probes[probe.name]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -23,7 +24,7 @@ from ancf.plan.report import Plan
 from ancf.plan.rigid import RIGID_SHARE, as_rigid
 from ancf.plan.search import Search
 from ancf.plan.symmetry import below, doubled, halved
-from ancf.plan.timing import SHARE, Timing, reference, steppings
+from ancf.plan.timing import Timing, reference, steppings
 from ancf.run import Dynamic, Static
 from ancf.scene import Scene
 
@@ -32,6 +33,8 @@ LEAST, MOST, PROPORTION = 20.0, 300.0, 9.0
 
 To check that by hand takes it once more, with twice the elements along both sides and half the steps: 9 times in all.
 """
+_TOLD = 0.5
+"""Seconds of measuring costs above which they are told."""
 _SYMMETRIC = 0.2
 """Part of the tolerance that the whole of a symmetric scene may be off its half."""
 _CHECKS = 3
@@ -85,12 +88,17 @@ def plan(
     scene = scene_of(scene, run)
     names = wanted(scene, want)
     check(scene, tol, budget)
+    start = time.perf_counter()
     costs = calibrated(threads=threads)
+    measured = time.perf_counter() - start
     written = as_written(scene, costs)
     if budget is None:
         budget = MOST if written is None else min(max(PROPORTION * written, LEAST), MOST)
     pilots = Pilots(scene, names, budget, threads, costs)
     found = _planned(scene, pilots, costs, tol, max(written or budget, LEAST))
+    if measured > _TOLD:
+        told = f"Costs on this machine were measured first, in {measured:.2g} s, and are kept for later plans."
+        found = replace(found, reasons=[*found.reasons, told])
     found = replace(found, budget=budget, seconds_as_written=written)
     if pilots.interrupted:
         raise Interrupted("the plan was interrupted", found)
@@ -192,11 +200,7 @@ def _timings(
         exact = reference(pilots, rung, tol)
         if exact.ok:
             changes(exact.values, pilots.want, exact.result)
-            found = steppings(pilots, rung, exact, tol)
-            if not found:
-                assert exact.choice.stepping is not None
-                found = [Timing(exact.choice.stepping, SHARE * tol, exact)]
-            return found
+            return steppings(pilots, rung, exact, tol)
     raise _none(pilots)
 
 

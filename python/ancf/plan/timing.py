@@ -25,6 +25,8 @@ _FINER = 8.0
 _TIGHTEST = 1e-11
 _MESHES = 0.5
 """Part of the time left that is for meshes."""
+_ROOM = 30.0
+"""Runs of the coarse mesh that must fit into the time left, if no stepping is good enough."""
 _FEWEST_STEPS = 12
 _ROUNDS = 11
 _ORDER = 3
@@ -117,11 +119,13 @@ def steppings(pilots: Pilots, rung: Rung, precise: Pilot, tol: float) -> list[Ti
     Returns
     -------
     list of Timing
-        Of each method that has one at no more than some times the cost of the cheapest, cheapest first.
+        Of each method that has one at no more than some times the cost of the cheapest, cheapest first. If none has,
+        the best of those that leave time for meshes, as where a motion is chaotic.
     """
     exact = precise.values
     scale = scales(exact)
     found: list[Timing] = []
+    rough: list[Timing] = []
     least = _MESHES * pilots.left if np.isfinite(pilots.left) else 0.0
     unstable = False
     for ladder in (*_fixed(pilots), *_controlled(pilots, tol, scale)):
@@ -146,6 +150,7 @@ def steppings(pilots: Pilots, rung: Rung, precise: Pilot, tol: float) -> list[Ti
                 if error <= SHARE * tol:
                     found.append(Timing(stepping, error, pilot))
                     break
+                rough.append(Timing(stepping, error, pilot))
                 # Those that are too long even if errors shrink fast, with the third power of the step or with the
                 # tolerance, are left out.
                 ratio = min(error, 1.0) / (SHARE * tol)
@@ -154,6 +159,11 @@ def steppings(pilots: Pilots, rung: Rung, precise: Pilot, tol: float) -> list[Ti
                 break
         if pilots.left <= least:
             break
+    if not found:
+        assert precise.choice.stepping is not None
+        rough.append(Timing(precise.choice.stepping, SHARE * tol, precise))
+        short = [timing for timing in rough if _ROOM * timing.pilot.seconds <= pilots.left]
+        return [min(short, key=lambda t: t.error) if short else min(rough, key=lambda t: t.pilot.seconds)]
     found.sort(key=lambda timing: timing.pilot.seconds)
     found = [t for explicit in (False, True) for t in [t for t in found if t.stepping.explicit is explicit][:_KEPT]]
     implicit = min((t for t in found if not t.stepping.explicit), key=lambda t: t.pilot.seconds, default=None)
