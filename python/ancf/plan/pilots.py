@@ -181,4 +181,6 @@ class Pilots:
         seconds = clock() - start
         if result.status != "ok":
             return failed(result.reason)
+        if any(isinstance(doubt, EnergyWarning) for doubt in result.doubts()):
+            return failed("its energy does not add up")
         return Pilot(choice, result, [result.probes[name].value for name in self.want], seconds, "ok")
