@@ -414,13 +414,13 @@ def test_a_chaotic_motion_gets_a_plan_that_promises_nothing() -> None:
     assert "The estimates do not reach the tolerance" in " ".join(plan.reasons)
 
 
-def test_a_motion_whose_energy_does_not_add_up_is_not_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_motion_with_energy_from_nowhere_is_not_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
     """What a run says of itself is that it is wrong, whatever its probes are."""
     scene = ancf.Scene("", cantilever(), ancf.Dynamic(until=0.1, step=1e-3))
     choice = Choice(Rung(CONTINUOUS, ((2, 1),)), Stepping("hht", step=0.01))
     assert pilots.Pilots(scene, ["A"], np.inf, 1).run(choice).ok
     monkeypatch.setattr("ancf.result.balance_warnings", lambda *_: ("energy comes from nowhere",))
-    assert pilots.Pilots(scene, ["A"], np.inf, 1).run(choice).outcome == "its energy does not add up"
+    assert pilots.Pilots(scene, ["A"], np.inf, 1).run(choice).outcome == "energy comes from nowhere"
 
 
 def test_one_element_between_clamped_edges_does_not_move_and_is_left_out() -> None:

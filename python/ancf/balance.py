@@ -14,6 +14,8 @@ _GAIN = 0.05
 _LOSS = 0.2
 """Shares of the largest energy. Pendulums whose steps are short enough stay below 0.004 and 0.015."""
 
+FROM_NOWHERE = "energy comes from nowhere"
+
 
 class EnergyWarning(RuntimeWarning):
     """The energy balance of a motion is off: its steps are too long, and it is not to be trusted."""
@@ -57,7 +59,7 @@ def balance_warnings(run: Dynamic, energy: Energy, moved: bool) -> tuple[str, ..
         gain = mechanical - np.minimum.accumulate(mechanical)
         loss = np.maximum.accumulate(mechanical + dissipated) - (mechanical + dissipated)
     which = "the motion, or the work of the moved supports," if moved else "the motion"
-    gained = (gain, _GAIN, "energy comes from nowhere: kinetic + membrane + bending - loads rises", "is wrong")
+    gained = (gain, _GAIN, f"{FROM_NOWHERE}: kinetic + membrane + bending - loads rises", "is wrong")
     taken = (loss, _LOSS, "the integrator takes energy: all of it - loads falls", "is damped more than the model says")
     cure = "a smaller step, error control (rtol)" if run.step is not None else "a smaller rtol"
     for amount, allowed, what, wrong in (gained, taken) if run.step is not None else (gained,):

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from ancf.plan.errors import distance, scales
 from ancf.plan.ladder import RIGID, apply
 from ancf.plan.pilots import SLOW, Pilot, Pilots
@@ -32,7 +34,8 @@ def of_search(
     converged = search.checked and in_space + in_time <= tol
     reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.2g}."]
     if in_space + in_time > tol:
-        reasons[0] = f"{chosen.choice.rung} is the best rung found, with an error of {in_space:.2g}."
+        known = f"an error of {in_space:.2g}" if np.isfinite(in_space) else "an error that is not known"
+        reasons[0] = f"{chosen.choice.rung} is the best rung found, with {known}."
     if chosen.choice.rung == finest:
         reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
     if chosen.choice.stepping is not None:
@@ -54,21 +57,7 @@ def of_search(
             "Nothing is promised: steps are known on a coarse mesh only, shorter ones did not end on finer ones."
         )
     if in_space + in_time > tol:
-        slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
-        failed = [p for p in pilots.done if not p.ok and p.outcome != SLOW and p.choice.rung.family != RIGID]
-        finer = [p for p in failed if p.choice.rung.elements > finest.elements]
-        if pilots.interrupted:
-            why = "the plan was interrupted"
-        elif finer:
-            why = f"finer meshes do not reach their end ({finer[-1].choice.rung}: {finer[-1].outcome})"
-        elif slow:
-            why = "differences hardly shrink with the mesh, as at a singular point or where the motion is chaotic"
-        else:
-            why = "the budget (--budget) or the largest mesh was reached"
-        told_error = "Promised is" if search.checked else "What was run suggests"
-        reasons.append(
-            f"The estimates do not reach the tolerance: {why}. {told_error} an error of {in_space + in_time:.2g}."
-        )
+        reasons.append(_missed(search, in_space + in_time))
     threads = search.costs.threads(chosen.choice)
     if pilots.threads != 1:
         reasons.append(f"{'One thread is' if threads == 1 else 'More threads are'} predicted to be the fastest.")
@@ -133,6 +122,26 @@ def of_rigid(scene: Scene, pilots: Pilots, pilot: Pilot, bent: float, tol: float
         predicted_seconds=pilot.seconds,
         threads=1,
     )
+
+
+def _missed(search: Search, error: float) -> str:
+    """Say why the estimates do not reach the tolerance, and what they are."""
+    pilots, finest = search.pilots, search.best
+    slow = [side for side in search.sides.values() if side.rate is not None and side.rate < 0.6]
+    failed = [p for p in pilots.done if not p.ok and p.outcome != SLOW and p.choice.rung.family != RIGID]
+    finer = [p for p in failed if p.choice.rung.elements > finest.elements]
+    if pilots.interrupted:
+        why = "the plan was interrupted"
+    elif finer:
+        why = f"finer meshes do not reach their end ({finer[-1].choice.rung}: {finer[-1].outcome})"
+    elif slow:
+        why = "differences hardly shrink with the mesh, as at a singular point or where the motion is chaotic"
+    else:
+        why = "the budget (--budget) or the largest mesh was reached"
+    reason = f"The estimates do not reach the tolerance: {why}."
+    if not np.isfinite(error):
+        return reason
+    return f"{reason} {'Promised is' if search.checked else 'What was run suggests'} an error of {error:.2g}."
 
 
 def _told(in_time: float) -> str:

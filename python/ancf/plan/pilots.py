@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from ancf.balance import EnergyWarning
+from ancf.balance import FROM_NOWHERE, EnergyWarning
 from ancf.courses import CourseWarning
 from ancf.errors import InputError, Interrupted
 from ancf.plan.cost import Costs
@@ -181,6 +181,6 @@ class Pilots:
         seconds = clock() - start
         if result.status != "ok":
             return failed(result.reason)
-        if any(isinstance(doubt, EnergyWarning) for doubt in result.doubts()):
-            return failed("its energy does not add up")
+        if any(FROM_NOWHERE in warning for warning in result.warnings):
+            return failed(FROM_NOWHERE)
         return Pilot(choice, result, [result.probes[name].value for name in self.want], seconds, "ok")

@@ -176,7 +176,9 @@ def _choose(search: Search) -> Pilot:
     checked: set[Rung] = set()
     while True:
         errors = search.observed()
-        chosen = search.cheapest(errors) or search.pilots.known(min(errors, key=errors.__getitem__))
+        chosen = search.cheapest(errors) or search.pilots.known(
+            min(errors, key=lambda choice: (errors[choice], -choice.rung.elements))
+        )
         assert chosen is not None
         if chosen.choice.rung in checked or len(checked) == _CHECKS:
             return chosen
