@@ -21,6 +21,7 @@ PENDULUM = [
     ("nu = 0.3", "nu = -1", "material.rubber.nu = -1: must be greater than -1", ""),
     ("density = 7810", "density = 0", "material.rubber.density = 0.0: must be greater than 0 in motion", ""),
     ("E = 1e5", "E = 0", "material.rubber.E = 0: must be greater than 0", ""),
+    ("E = 1e5", "E = 1e-300", "material.rubber.E = 1e-300: must be from 1e-30 to 1e+30", ""),
     ("[2, 2]", "[0, 2]", "body.plate.divisions.0 = 0: must be greater than 0", ""),
     ("[2, 2]", "[2.5, 2]", "body.plate.divisions.0 = 2.5: must be a whole number", ""),
     ("[2, 2]", "[2]", "body.plate.divisions = [2]: must be a list of 2 numbers", ""),

@@ -1,5 +1,6 @@
 """Reference shapes: rectangle, annulus, cylinder, sphere, and any smooth map."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -55,6 +56,13 @@ def test_given_derivatives_are_taken() -> None:
         ({"position": lambda x, y: (x, y, x[:2])}, "position: must return three components"),
         ({"position": lambda x, y: (x, x, 0)}, "neither zero nor parallel"),
         ({"position": lambda x, y: (x, y, np.nan)}, "neither zero nor parallel"),
+        # A side that is a point, tangents that vanish at one: differences give them no exact zero.
+        (
+            {"position": lambda x, y: (x, y * (1 - x), 0)},
+            "at [1, 0]: must give finite numbers, r_x and r_y neither",
+        ),
+        ({"position": lambda x, y: (x * x, y, 0)}, "at [0, 0]: must give finite numbers, r_x and r_y neither"),
+        ({"position": lambda x, y: (x, math.cos(y), 0)}, "position: fails: .*called with arrays"),
         ({"derivatives": lambda x, y: (x, y)}, "derivatives: must return r_x, r_y and r_xy"),
         ({"domain": ((0, 1), (1, 1))}, "domain = [[0, 1], [1, 1]]: must be two pairs of increasing numbers"),
         ({"position": 1}, "position"),

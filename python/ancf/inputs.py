@@ -7,7 +7,7 @@ from typing import Annotated, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
 from ancf.errors import InputError, Mistake, one_of, show
@@ -208,6 +208,10 @@ def numbers(name: str, values: ArrayLike, *shape: int | str, finite: bool = True
     return array
 
 
+_SMALLEST, _LARGEST = 1e-30, 1e30
+"""What is beyond is no quantity of a structure, and products of such numbers are none at all."""
+
+
 def _count(number: int) -> BeforeValidator:
     def check(value: Any) -> Any:
         if not isinstance(value, tuple) or len(value) != number:
@@ -217,7 +221,13 @@ def _count(number: int) -> BeforeValidator:
     return BeforeValidator(check)
 
 
-Positive = Annotated[float, Field(gt=0)]
+def _moderate(value: float) -> float:
+    if not _SMALLEST <= value <= _LARGEST:
+        raise ValueError(f"must be from {_SMALLEST:g} to {_LARGEST:g}")
+    return value
+
+
+Positive = Annotated[float, Field(gt=0), AfterValidator(_moderate)]
 PositiveInt = Annotated[int, Field(gt=0)]
 Pair = Annotated[tuple[Positive, Positive], _count(2)]
 Divisions = Annotated[PositiveInt, Field(le=2**27)]

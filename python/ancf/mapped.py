@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -40,7 +40,7 @@ class Surface(Plate):
     Raises
     ------
     InputError
-        If a value is impossible, or somewhere r_x and r_y are zero or parallel.
+        If a value is impossible, a function fails, or at a node r_x and r_y are zero or parallel.
 
     Examples
     --------
@@ -76,12 +76,12 @@ class Surface(Plate):
         """Return the reference surface."""
         sides = [np.linspace(*ends, number + 1) for ends, number in zip(self.domain, self.divisions, strict=True)]
         x, y = (grid.ravel() for grid in np.meshgrid(*sides))
-        r = _components(self.position(x, y), x, "position")
+        r = _components(self._call("position", x, y), x, "position")
         if self.derivatives is None:
             vectors = [r, *self._differences(x, y)]
         else:
-            given = tuple(self.derivatives(x, y))
-            if len(given) != 3:
+            given = self._call("derivatives", x, y)
+            if not isinstance(given, Sequence | np.ndarray) or len(given) != 3:
                 raise InputError(Mistake(("derivatives",), "must return r_x, r_y and r_xy"))
             vectors = [r, *(_components(vector, x, "derivatives") for vector in given)]
         try:
@@ -90,11 +90,21 @@ class Surface(Plate):
             problem = f"{error.value}: must give {error.allowed}"
             raise InputError(Mistake(("position" if self.derivatives is None else "derivatives",), problem)) from None
 
+    def _call(self, name: str, x: FloatArray, y: FloatArray) -> Any:
+        """Return what a function of the user gives."""
+        try:
+            return getattr(self, name)(x, y)
+        except Exception as error:
+            told = (
+                f"fails: {error}; it is called with arrays x, y, which functions of NumPy take and those of math do not"
+            )
+            raise InputError(Mistake((name,), told)) from error
+
     def _differences(self, x: FloatArray, y: FloatArray) -> list[FloatArray]:
         """Return r_x, r_y, r_xy, each (points, 3), from positions at 7 x 7 points about each point."""
         (xs, value_x, slope_x), (ys, value_y, slope_y) = map(_stencil, (x, y), self.domain)
         X, Y = np.broadcast_arrays(xs[:, :, None], ys[:, None, :])
-        r = _components(self.position(X, Y), X, "position")
+        r = _components(self._call("position", X, Y), X, "position")
         pairs = [(slope_x, value_y), (value_x, slope_y), (slope_x, slope_y)]
         return [np.asarray(np.einsum("pa,pb,pabi->pi", along_x, along_y, r)) for along_x, along_y in pairs]
 

@@ -214,7 +214,9 @@ impl Point<COMPONENTS> {
     /// components: that leaves no negative energy.
     fn split(&mut self, share: f64, across: [f64; 2]) -> Self {
         let whole = Matrix3::from(self.weight);
-        let compliance = whole.try_inverse().expect("a stiffness");
+        // As a share of its size, so that its determinant does not vanish in soft, thin, small elements.
+        let size = whole.norm();
+        let compliance = (whole / size).try_inverse().expect("a stiffness") / size;
         let mut part = share * whole;
         for a in 0..2 {
             part[(a, a)] += across[a].min(1.0 - share) / compliance[(a, a)];

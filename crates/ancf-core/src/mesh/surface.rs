@@ -35,7 +35,15 @@ impl SurfacePoint {
         let finite = [self.r, self.r_x, self.r_y, self.r_xy].iter().flatten().all(|number| number.is_finite());
         finite && x.cross(&y).norm() > ANGLE * x.norm() * y.norm()
     }
+
+    /// Area per area of the natural coordinates.
+    fn area(&self) -> f64 {
+        Vector3::from(self.r_x).cross(&Vector3::from(self.r_y)).norm()
+    }
 }
+
+/// Area, relative to the largest at a node, that is none: tangents from differences do not vanish exactly.
+const NO_AREA: f64 = 1e-10;
 
 /// The reference shape of a body as a function of its natural coordinates x and y.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,7 +140,10 @@ impl Surface {
         let grid = Grid::new(domain, divisions)?;
         let allowed = format!("{} points, one a node", grid.nodes());
         InputError::check("points", points.len(), points.len() == grid.nodes(), &allowed)?;
-        if let Some(node) = points.iter().position(|point| !point.is_regular()) {
+        let largest = points.iter().map(SurfacePoint::area).fold(0.0, f64::max);
+        // Not `<=`, which would let a NaN pass.
+        let regular = |point: &SurfacePoint| point.is_regular() && point.area() > NO_AREA * largest;
+        if let Some(node) = points.iter().position(|point| !regular(point)) {
             let [x, y] = grid.parameters(node);
             let allowed = "finite numbers, r_x and r_y neither zero nor parallel";
             return Err(InputError::new(format!("points.{node}"), format!("at [{x}, {y}]"), allowed));

@@ -42,7 +42,7 @@ impl Body {
         first_vector: usize,
     ) -> Result<Self, InputError> {
         let h = plate.thickness;
-        InputError::check("thickness", h, h > 0.0 && h.is_finite(), "a positive number, m")?;
+        InputError::check("thickness", h, (1e-30..=1e30).contains(&h), "from 1e-30 to 1e30, m")?;
         let variant = plate.element.variant(plate.membrane, plate.curvature)?;
         let grid = Grid::new(surface.domain(), divisions)?;
         Ok(Self { name: name.to_owned(), grid, plate, variant, first_vector })
