@@ -15,6 +15,7 @@ _LOSS = 0.2
 """Shares of the largest energy. Pendulums whose steps are short enough stay below 0.004 and 0.015."""
 
 FROM_NOWHERE = "energy comes from nowhere"
+"""How the warning of a gain begins."""
 
 
 class EnergyWarning(RuntimeWarning):

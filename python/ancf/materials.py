@@ -15,7 +15,7 @@ class Material(Input):
     Parameters
     ----------
     E : float
-        Young's modulus, Pa, greater than 0.
+        Young's modulus, Pa, greater than 0, from 1e-30 to 1e30.
     nu : float
         Poisson's ratio, between -1 and 0.5, both excluded.
     density : float, optional

@@ -26,7 +26,7 @@ impl Material {
     ///
     /// # Errors
     ///
-    /// Young's modulus must be from 1e-100 to 1e100 Pa, Poisson's ratio above -1 and below 0.5, the density not negative
+    /// Young's modulus must be from 1e-30 to 1e30 Pa, Poisson's ratio above -1 and below 0.5, the density not negative
     /// (zero is enough for statics).
     ///
     /// # Examples
@@ -37,7 +37,7 @@ impl Material {
     /// assert_eq!(Material::new(2.07e11, 0.5, 7810.0).unwrap_err().argument, "nu");
     /// ```
     pub fn new(young: f64, poisson: f64, density: f64) -> Result<Self, InputError> {
-        InputError::check("E", young, (1e-100..=1e100).contains(&young), "from 1e-100 to 1e100, Pa")?;
+        InputError::check("E", young, (1e-30..=1e30).contains(&young), "from 1e-30 to 1e30, Pa")?;
         InputError::check("nu", poisson, poisson > -1.0 && poisson < 0.5, "above -1 and below 0.5")?;
         InputError::check(
             "density",

@@ -32,12 +32,14 @@ def of_search(
     pilots, tol, finest = search.pilots, search.tol, search.best
     errors = search.observed()
     converged = search.checked and in_space + in_time <= tol
-    reasons = [f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.2g}."]
-    if in_space + in_time > tol:
-        known = f"an error of {in_space:.2g}" if np.isfinite(in_space) else "an error that is not known"
-        reasons[0] = f"{chosen.choice.rung} is the best rung found, with {known}."
     if chosen.choice.rung == finest:
-        reasons[0] = f"{finest} is the finest rung that was run; no cheaper one is good enough."
+        reason = f"{finest} is the finest rung that was run; no cheaper one is good enough."
+    elif in_space + in_time <= tol:
+        reason = f"{chosen.choice.rung} is the cheapest rung found whose error is small enough: {in_space:.2g}."
+    else:
+        known = f"an error of {in_space:.2g}" if np.isfinite(in_space) else "an error that is not known"
+        reason = f"{chosen.choice.rung} is the best rung found, with {known}."
+    reasons = [reason]
     if chosen.choice.stepping is not None:
         reasons.append(
             f"{chosen.choice.stepping} is the cheapest way through time that was found; what is known best "

@@ -54,7 +54,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// The name must be new, the thickness positive, the divisions at least one and those of a surface given at nodes;
+    /// The name must be new, the thickness from 1e-30 to 1e30 m, the divisions at least one and those of a surface given at nodes;
     /// the element must have the membrane and curvature variants.
     pub fn add_body(
         &mut self,
