@@ -87,8 +87,24 @@ def test_a_growing_load_makes_it_jump() -> None:
     assert energy.loads[-1] > 1.2 * (energy.membrane + energy.bending)[-1]
 
 
+@pytest.mark.parametrize("load", [10.0, 100.0])
+def test_the_snap_is_told_however_far_the_load_is(load: float) -> None:
+    """The largest load of the table before the snap is 0.7421; a jump may be told 1 % late."""
+    result = ancf.solve_static(roof(), load_factors=[load])
+    np.testing.assert_allclose(result.jumps, [0.7421], rtol=0.011)
+
+
+@pytest.mark.parametrize("force", [(0.0, 0.0, 0.0), None])
+def test_arc_length_needs_a_load_that_grows(force: tuple[float, float, float] | None) -> None:
+    model = roof()
+    loads = [] if force is None else [ancf.Force(at="corner:x1y0", force=force)]
+    with pytest.raises(ancf.SolveError, match="do not change with the load factor"):
+        ancf.solve_static(ancf.Model(bodies=model.bodies, supports=model.supports, loads=loads), path="arc")
+
+
 def test_arc_length_ends_after_so_many_steps() -> None:
-    result = ancf.solve_static(roof(), load_factors=[0.01, 1.0], path="arc", max_steps=3)
+    with pytest.warns(ancf.PathWarning, match="after 3 steps at load factor 0.0.*before 1"):
+        result = ancf.solve_static(roof(), load_factors=[0.01, 1.0], path="arc", max_steps=3)
     assert result.status == "ok"
     assert len(result.t) == 4
     assert 0 < result.reached < 0.04

@@ -110,6 +110,99 @@ def test_a_panel_snaps_at_the_same_load_in_any_steps(load: float) -> None:
     np.testing.assert_allclose(result.jumps, [0.0316], rtol=0.012)
 
 
+def arch() -> ancf.Model:
+    """Shallow, pinned at both ends, under a force of 100 N in its middle, in its plane."""
+    start = (np.pi - 0.3) / 2
+    shape = ancf.Cylinder(
+        radius=10.0,
+        angle=(start, np.pi - start),
+        length=(0.0, 0.1),
+        divisions=(16, 1),
+        thickness=0.01,
+        material=ancf.Material(E=2e11, nu=0.0, density=7800.0),
+    )
+    ends = [ancf.Support(at=f"edge:{side}", fix=["r", "r_y"]) for side in ("x0", "x1")]
+    return ancf.Model(
+        bodies={"arch": shape},
+        supports=[*ends, ancf.Support(at="all", fix=["r.z"])],
+        loads=[ancf.Force(at=(np.pi / 2, 0.05), force=(0.0, -100.0, 0.0))],
+    )
+
+
+ARCH = 12.91
+"""Load factor at which a frequency passes through zero: the arch sways before it snaps at 13.04."""
+
+
+def test_the_frequency_of_an_arch_vanishes_where_it_loses_its_stability() -> None:
+    lowest = [ancf.modes(arch(), count=1, load_factor=load).frequency[0] for load in (0.98 * ARCH, 0.999 * ARCH)]
+    # Squares of frequencies fall in proportion to the load.
+    assert lowest[1] ** 2 / lowest[0] ** 2 == pytest.approx(0.001 / 0.02, abs=0.06)
+
+
+@pytest.mark.parametrize("factors", [[5.0, 10.0, 50.0], [1.0, 2.0, 3.0, 4.0, 5.0, 50.0], [20.0]])
+def test_an_arch_jumps_at_the_same_load_however_far_the_next_one_is(factors: list[float]) -> None:
+    """Where two branches leave the path close to each other."""
+    result = ancf.solve_static(arch(), load_factors=factors)
+    np.testing.assert_allclose(result.jumps, [ARCH], rtol=0.012)
+
+
+def test_modes_tell_the_jumps_on_the_way_to_their_state() -> None:
+    found = ancf.modes(arch(), count=1, load_factor=13.5)
+    np.testing.assert_allclose(found.jumps, [ARCH], rtol=0.012)
+
+
+@pytest.mark.parametrize(("young", "thickness", "pressure"), [(1e6, 1e-4, 0.3), (4e9, 1e-5, 0.1)])
+def test_an_inflated_film_does_not_jump(young: float, thickness: float, pressure: float) -> None:
+    """It is stable from first to last, though it has hardly any stiffness before it has moved by its thickness.
+
+    Held at two edges it is a flat circular arc: the force p L^2 / (8 w) stretches it by 8/3 (w / L)^2.
+    """
+    strip = ancf.Rectangle(
+        size=(LENGTH, 0.25), divisions=(16, 4), thickness=thickness, material=ancf.Material(E=young, nu=0.3)
+    )
+    held = [ancf.Support(at=f"edge:{side}", fix=["r"]) for side in ("x0", "x1")]
+    model = ancf.Model(
+        bodies={"film": strip},
+        supports=[*held, *(ancf.Support(at=f"edge:{side}", symmetry="y") for side in ("y0", "y1"))],
+        loads=[ancf.Pressure(pressure=pressure)],
+        probes=[ancf.Probe(name="middle", at=(LENGTH / 2, 0.0), quantity="displacement")],
+    )
+    result = ancf.solve_static(model)
+    assert len(result.jumps) == 0
+    energy = result.energy
+    np.testing.assert_allclose(energy.loads[-1], (energy.membrane + energy.bending)[-1], rtol=1e-2)
+    deflection = (3 * pressure * LENGTH**4 * (1 - 0.3**2) / (64 * young * thickness)) ** (1 / 3)
+    np.testing.assert_allclose(abs(result.probes["middle"].value[-1, 2]), deflection, rtol=0.01)
+
+
+def test_a_strip_stretched_until_nothing_of_its_width_is_left_is_refused() -> None:
+    """St. Venant-Kirchhoff's law leaves no width at a stretch of sqrt(1 + 1 / nu): 2.08, under 0.83 of this load."""
+    strip = ancf.Rectangle(size=(1.0, 0.2), divisions=(8, 2), thickness=1e-3, material=ancf.Material(E=1e6, nu=0.3))
+    model = ancf.Model(
+        bodies={"strip": strip},
+        supports=[ancf.Support(at="edge:x0", clamp=True)],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(4000.0 / 0.83, 0.0, 0.0))],
+    )
+    with pytest.raises(ancf.SolveError, match=r"elements collapse at .* of body") as failed:
+        ancf.solve_static(model)
+    assert 0.5 < failed.value.result.reached < 1
+
+
+def test_a_sheet_is_not_pushed_through_itself() -> None:
+    """In its plane St. Venant-Kirchhoff's law carries no more than E h / sqrt(27) per length."""
+    sheet = ancf.Rectangle(
+        size=(1.0, 1.0), divisions=(8, 4), thickness=1e-3, membrane="full", material=ancf.Material(E=1e6, nu=0.0)
+    )
+    model = ancf.Model(
+        bodies={"sheet": sheet},
+        supports=[ancf.Support(at="edge:x0", clamp=True), ancf.Support(at="all", fix=["r.z", "r_x.z", "r_y.z"])],
+        loads=[ancf.LineLoad(at="edge:x1", per_length=(-250.0, 0.0, 0.0))],
+    )
+    with pytest.raises(ancf.SolveError, match=r"elements collapse at .* of body") as failed:
+        ancf.solve_static(model)
+    assert failed.value.result.reached < 1e3 / np.sqrt(27) / 250
+
+
 def bulge(across: float, divisions: int, thickness: float, sides: list[str], force: float) -> ancf.Model:
     """A paraboloid over a square, pinned at some sides, under a force in its middle."""
     shape = ancf.Surface(

@@ -38,14 +38,26 @@ def test_a_published_shell_takes_few_steps(name: str) -> None:
         np.testing.assert_allclose(found, published, rtol=tolerance, err_msg=f"{probe} {'xyz'[component]}")
 
 
-@pytest.mark.parametrize(("curvature", "load"), [("paper", 0.498), ("koiter", 0.517)])
-def test_the_pulled_cylinder_tells_that_it_snaps(curvature: str, load: float) -> None:
+@pytest.mark.parametrize(
+    ("curvature", "divisions", "load"),
+    [("paper", [24, 16], 0.498), ("koiter", [24, 16], 0.517), ("paper", [16, 8], 0.496)],
+)
+def test_the_pulled_cylinder_tells_that_it_snaps(curvature: str, divisions: list[int], load: float) -> None:
     """Between 0.5 and 0.525 in the table, by the displacements there; long steps do not pass over it."""
     document = tomllib.loads((SCENES / "pulled_cylinder.toml").read_text(encoding="utf-8"))
-    document["body"]["shell"]["curvature"] = curvature
+    document["body"]["shell"] |= {"curvature": curvature, "divisions": divisions}
     result = ancf.Scene.of(document).solve()
     assert isinstance(result, ancf.Result)
     np.testing.assert_allclose(result.jumps, [load], atol=0.005)
+
+
+def test_the_pulled_cylinder_tells_that_it_snaps_whichever_load_factors_are_wanted() -> None:
+    """The one at 0.5 is just beyond the snap."""
+    document = tomllib.loads((SCENES / "pulled_cylinder.toml").read_text(encoding="utf-8"))
+    document["run"]["load_factors"] = [tenth / 10 for tenth in range(1, 11)]
+    result = ancf.Scene.of(document).solve()
+    assert isinstance(result, ancf.Result)
+    np.testing.assert_allclose(result.jumps, [0.498], atol=0.005)
 
 
 def test_koiters_curvature_follows_the_published_path_of_the_pulled_cylinder() -> None:

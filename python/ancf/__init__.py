@@ -40,7 +40,7 @@ from ancf.plan import Plan, plan
 from ancf.probes import Probe
 from ancf.records import Energy, Reaction, Record
 from ancf.result import Result
-from ancf.run import CheckpointWarning, Dynamic, Modes, Static
+from ancf.run import CheckpointWarning, Dynamic, Modes, PathWarning, Static
 from ancf.scene import Scene, load_scene
 from ancf.solve import simulate, solve_static
 from ancf.supports import Rotation, Shake, Support
@@ -64,6 +64,7 @@ __all__ = [
     "Model",
     "Modes",
     "Moment",
+    "PathWarning",
     "Plan",
     "Pressure",
     "Probe",

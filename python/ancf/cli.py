@@ -12,7 +12,7 @@ from ancf.commands.letters import told_letters
 from ancf.commands.signals import was_stopped, watch_signals
 from ancf.courses import CourseWarning
 from ancf.errors import InputError
-from ancf.run import CheckpointWarning
+from ancf.run import CheckpointWarning, PathWarning
 
 _COMMANDS = (run, plan, chart, stability, reproduce, info)
 
@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     watch_signals()
     # Commands tell them in their own way.
-    for told in (EnergyWarning, CourseWarning, CheckpointWarning):
+    for told in (EnergyWarning, CourseWarning, CheckpointWarning, PathWarning):
         warnings.simplefilter("ignore", told)
     try:
         with told_letters():

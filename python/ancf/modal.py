@@ -39,6 +39,8 @@ class ModalResult:
         Why it did not end well and what to try; empty if it did.
     q : ndarray, shape (n,)
         The nodal coordinates about which it oscillates.
+    jumps : ndarray, shape (jumps,)
+        Load factors at which the structure has jumped on its way to this state, as of `Result`.
     frequency : ndarray, shape (modes,)
         Hz. Exactly 0 for motions without stiffness, as the rigid ones of a free body. Negative where the state is not
         stable: a mode with the frequency -f grows as exp(2 pi f t).
@@ -58,6 +60,7 @@ class ModalResult:
     reason: str
     advice: str
     q: FloatArray = field(repr=False)
+    jumps: FloatArray
     frequency: FloatArray
     eigenvalue: FloatArray = field(repr=False)
     shapes: FloatArray = field(repr=False)

@@ -167,7 +167,7 @@ def summarize(title: str, result: AnyResult) -> dict[str, Any]:
         "seconds": _plain(result.seconds),
     }
     if isinstance(result, ModalResult):
-        return summary | {"modes": {"frequency": _plain(result.frequency)}}
+        return summary | {"jumps": _plain(result.jumps), "modes": {"frequency": _plain(result.frequency)}}
     energy = {field.name: getattr(result.energy, field.name) for field in fields(result.energy)}
     probes = {name: {"t": _plain(probe.t), "value": _plain(probe.value)} for name, probe in result.probes.items()}
     reactions = [_reaction(reaction) for reaction in result.reactions]

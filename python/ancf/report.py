@@ -32,12 +32,15 @@ def describe(title: str, result: AnyResult) -> str:
     counts = ", ".join(f"{number} {name}" for name, number in result.counts.items())
     end = f"  {counts}; {result.seconds['total']:.3g} s"
     if isinstance(result, ModalResult):
-        return "\n".join([f"{title or 'Run'}: {result.status}, {len(result.frequency)} modes", *_modes(result), end])
-    place = f"{result.run.parameter} = {result.reached:.6g} {result.run.unit}".rstrip()
-    if len(result.jumps):
-        place += f", jumped at {', '.join(f'{t:.4g}' for t in result.jumps)}"
+        found = f"{len(result.frequency)} modes{_jumps(result)}"
+        return "\n".join([f"{title or 'Run'}: {result.status}, {found}", *_modes(result), end])
+    place = f"{result.run.parameter} = {result.reached:.6g} {result.run.unit}".rstrip() + _jumps(result)
     last = _last_state(result) if len(result.t) else []
     return "\n".join([f"{title or 'Run'}: {result.status}, {place}", *last, end])
+
+
+def _jumps(result: AnyResult) -> str:
+    return f", jumped at {', '.join(f'{t:.4g}' for t in result.jumps)}" if len(result.jumps) else ""
 
 
 def _modes(result: ModalResult) -> list[str]:

@@ -14,7 +14,7 @@ from ancf.courses import CourseWarning, course_warnings
 from ancf.model import Model
 from ancf.probes import Probe, Quantity
 from ancf.records import Energy, FloatArray, Reaction, Record
-from ancf.run import CheckpointWarning, Dynamic, Static
+from ancf.run import CheckpointWarning, Dynamic, PathWarning, Static
 
 if TYPE_CHECKING:
     import os
@@ -137,16 +137,20 @@ class Result:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is doubtful about a motion, and what to try.
+        """What is doubtful about a path or a motion, and what to try.
 
-        Tables over time that it does not see as they are meant; where and how far its energy balance is off; that the
-        last checkpoint could not be written.
+        That a path by arc length ends before its last load factor; in motion tables over time that it does not see as
+        they are meant; where and how far its energy balance is off; that the last checkpoint could not be written.
         """
         return tuple(str(doubt) for doubt in self.doubts())
 
     def doubts(self) -> list[RuntimeWarning]:
         """Return the same as the warnings that are given."""
         doubts: list[RuntimeWarning] = []
+        if isinstance(self.run, Static) and self.status == "ok" and self.reached != self.run.load_factors[-1]:
+            text = f"the path ends after {self.run.max_steps} steps at load factor {self.reached:.6g}"
+            cure = 'more max_steps, or path = "load", which jumps where a path turns away'
+            doubts.append(PathWarning(f"{text}, before {self.run.load_factors[-1]:g}. Try: {cure}"))
         if isinstance(self.run, Dynamic):
             doubts += [CourseWarning(text) for text in course_warnings(self.model, self.run)]
             if not self._rests():

@@ -64,6 +64,11 @@ def solve_static(
         If the run fails; `SolveError.result` holds what it had.
     Interrupted
         On Ctrl-C; `Interrupted.result` holds what it had.
+
+    Warns
+    -----
+    PathWarning
+        If a path by arc length ends before its last load factor; also in `Result.warnings`.
     """
     run = Static(
         load_factors=load_factors,

@@ -22,8 +22,9 @@ use crate::run::Run;
 const PERIOD: Duration = Duration::from_millis(50);
 /// How old the checkpoint in the file may become.
 const BETWEEN_CHECKPOINTS: Duration = Duration::from_secs(1);
-/// How long a solve that was stopped may take to answer; it is left behind after that.
-const PATIENCE: Duration = Duration::from_millis(100);
+/// How long a solve that was stopped may take to answer, an iteration of it at most; it is left behind after that, or when the
+/// user insists.
+const PATIENCE: Duration = Duration::from_secs(5);
 
 /// What a solve tells while it runs.
 enum Event {
@@ -170,13 +171,18 @@ pub fn run(
     let deadline = Instant::now() + PATIENCE;
     loop {
         let left = deadline.saturating_duration_since(Instant::now());
-        match py.detach(|| receive(&mut receiver, left)) {
+        match py.detach(|| receive(&mut receiver, left.min(PERIOD))) {
+            Err(RecvTimeoutError::Timeout) if !left.is_zero() && py.check_signals().is_ok() => {}
             Ok(Event::State(state)) => states.push(state),
             Ok(Event::Withdraw(after)) => states.withdraw(after),
             Ok(Event::Reached(t)) => reached = t,
             Ok(Event::Checkpoint(done)) => unsaved = done.err(),
             Ok(Event::End(end)) => return finish(py, end, states, coordinates, reached, unsaved, Some(exception)),
-            Err(_) => return Ok(Run::new(None, states, coordinates, reached, unsaved, Some(exception))),
+            Err(_) => {
+                // What was reached between the states is lost with the solve that is left behind.
+                let reached = states.last().map_or(0.0, |state| state.t);
+                return Ok(Run::new(None, states, coordinates, reached, unsaved, Some(exception)));
+            }
         }
     }
 }

@@ -11,8 +11,8 @@ from ancf.run.base import ProgressCall
 from ancf.run.checkpoint import CheckpointWarning
 from ancf.run.dynamic import Dynamic, Method
 from ancf.run.modes import Modes
-from ancf.run.static import Static
+from ancf.run.static import PathWarning, Static
 
-__all__ = ["CheckpointWarning", "Dynamic", "Method", "Modes", "ProgressCall", "Run", "Static"]
+__all__ = ["CheckpointWarning", "Dynamic", "Method", "Modes", "PathWarning", "ProgressCall", "Run", "Static"]
 
 Run: TypeAlias = Annotated[Static | Dynamic | Modes, PlainValidator(table(Static, Dynamic, Modes, key="kind"))]

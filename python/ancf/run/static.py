@@ -17,6 +17,10 @@ from ancf.model import Model
 from ancf.run.base import LoadedRun, ProgressCall, check_density
 
 
+class PathWarning(RuntimeWarning):
+    """A path by arc length has made as many steps as it may and not reached its last load factor."""
+
+
 class Static(LoadedRun):
     """Equilibrium under loads that grow: load factors reached in adaptive steps.
 
@@ -43,7 +47,7 @@ class Static(LoadedRun):
     min_step : float, default 1e-5
         The run fails if a smaller step would be needed.
     max_steps : int, default 1000
-        By arc length the path ends after so many steps, if it has not reached the last load factor.
+        By arc length the path ends after so many steps, with a warning if it has not reached the last load factor.
 
     Raises
     ------

@@ -9,7 +9,6 @@
 //! those that turn elements inside out, `simulation` strings steps together, and `checkpoint` is what is needed to go on later.
 
 mod checkpoint;
-mod collapse;
 mod control;
 mod dormand_prince;
 mod energy_momentum;

@@ -4,13 +4,12 @@ mod controlled;
 mod limit;
 
 use crate::assembly::Reaction;
-use crate::nonlinear::Failure;
+use crate::nonlinear::{Failure, Middles};
 use crate::observe::{Observer, State};
 use crate::report::Counts;
 
 use super::Options;
 use super::checkpoint::{Checkpoint, Memory};
-use super::collapse::Middles;
 use super::control::{Controller, Steps, Tolerances};
 use super::equations::Equations;
 use super::fingerprint::Fingerprint;
@@ -205,7 +204,8 @@ impl<'a> Simulation<'a> {
             return Ok(());
         }
         let place = self.middles.collapsed(self.equations.system.model(), &self.next.q);
-        place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, t: self.next.t }))
+        let end = || format!("t = {:.6e} s", self.next.t);
+        place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, end: end() }))
     }
 
     fn fixed_step(&mut self, step: f64, observer: &dyn Observer) -> Result<(), Failure> {

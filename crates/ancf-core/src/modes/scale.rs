@@ -30,7 +30,16 @@ pub(super) fn bending(system: &System) -> f64 {
 /// small stiffness of bending. So the length of a nodal vector stands for each of its components.
 pub(super) fn rounding(system: &System, stiffness: &SymmetricMatrix, shape: &[f64]) -> f64 {
     let length = |vector: usize| shape[3 * vector..][..3].iter().map(|x| x * x).sum::<f64>().sqrt();
-    let free: Vec<f64> = system.free().iter().map(|coordinate| length(coordinate / 3)).collect();
+    rounding_of(stiffness, system.free().iter().map(|coordinate| length(coordinate / 3)).collect())
+}
+
+/// The same of a matrix whose numbers are exact but for their last digits: no rounding leads from one component to another.
+pub(super) fn least_rounding(system: &System, stiffness: &SymmetricMatrix, shape: &[f64]) -> f64 {
+    rounding_of(stiffness, system.free().iter().map(|&coordinate| shape[coordinate].abs()).collect())
+}
+
+/// `eps x . |K| x` over the free coordinates.
+fn rounding_of(stiffness: &SymmetricMatrix, free: Vec<f64>) -> f64 {
     let (pattern, values) = (stiffness.pattern(), stiffness.values());
     let mut sum = 0.0;
     for column in 0..pattern.n() {

@@ -81,6 +81,12 @@ pub enum Failure {
         /// Number of negative pivots of the tangent.
         negative: usize,
     },
+    /// Arc length has nothing to follow.
+    #[error("the loads do not change with the load factor at {t:.6}: there is no path")]
+    ConstantLoad {
+        /// The load factor.
+        t: f64,
+    },
     /// A body has no mass.
     #[error("body \"{body}\" has no mass")]
     Massless {
@@ -94,6 +100,14 @@ pub enum Failure {
         found: usize,
         /// Those that exist or were wanted.
         count: usize,
+    },
+    /// A mode is nothing but rounding.
+    #[error("rounding changes the squared frequency of mode {number} by up to {lost:.1e} of itself")]
+    ModesLost {
+        /// Which, from 1.
+        number: usize,
+        /// The rounding, relative to the squared frequency.
+        lost: f64,
     },
     /// Loads that follow the body have no potential there.
     #[error(
@@ -111,12 +125,12 @@ pub enum Failure {
         t: f64,
     },
     /// An element is turned inside out in a step.
-    #[error("elements collapse at {place} in the step to t = {t:.6e} s")]
+    #[error("elements collapse at {place} in the step to {end}")]
     Collapsed {
         /// The middle of the element.
         place: String,
-        /// End of the step, s.
-        t: f64,
+        /// End of the step, in words.
+        end: String,
     },
     /// An explicit step, or the shortest that error control may take, is not stable.
     #[error("the step {step:.4e} s is above the limit {limit:.4e} s of the explicit method at t = {t:.4e} s")]
@@ -173,15 +187,19 @@ impl Failure {
                 "a finer mesh: a coarse one may be lost where a fine one rests; path = \"arc\", or a dynamic run with damping: \
                  what the structure goes to here is far, or nowhere (loads that follow the surface may make it flutter)"
             }
+            Self::ConstantLoad { .. } => {
+                "a load that acts on coordinates that are not fixed and grows with the load factor; path = \"load\""
+            }
             Self::Massless { .. } => "a positive density, or kind = \"static\"",
             Self::ModesNotFound { .. } => {
                 "fewer or more modes; a finer mesh, a thicker body: frequencies may be too far apart"
             }
+            Self::ModesLost { .. } => "a wider or shorter body: its frequencies are too far apart",
             Self::NoPotential { .. } => "loads that keep their direction, or a dynamic run",
             Self::Overflow { .. } => "a smaller step, or an implicit method with error control (rtol)",
             Self::Collapsed { .. } => {
-                "smaller steps or error control (rtol); check loads, thickness and units: the material may not be able to \
-                 carry the load"
+                "smaller steps (step or rtol in motion, more load_factors in statics); check loads, thickness and units: \
+                 the material may not be able to carry the load"
             }
             Self::StepAboveLimit { .. } => {
                 "a step below the limit, error control (rtol), or an implicit method; force = true to see what happens"

@@ -1,6 +1,7 @@
 //! The one nonlinear problem behind statics and every implicit integrator:
 //! `c M (q - q*) + k (Q_k(q) - Q_e(t, q)) + p = 0`.
 
+mod collapse;
 mod convergence;
 mod failure;
 mod forces;
@@ -9,6 +10,7 @@ mod options;
 mod reuse;
 mod scale;
 
+pub(crate) use collapse::Middles;
 pub use failure::Failure;
 pub use newton::{Newton, Report};
 pub use options::{Options, Variant};

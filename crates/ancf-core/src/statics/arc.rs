@@ -22,6 +22,10 @@ const FLATTENED: f64 = 6.0;
 const LEAST: f64 = 0.1;
 /// A limit point this close to the end of a step, relative to its length, is that end.
 const LIMIT: f64 = 0.05;
+/// The first step and the shortest, relative to the size of the model and to the thickness of its thinnest body: a flat
+/// skin has hardly any stiffness before it has moved by its thickness.
+const FIRST: f64 = 0.1;
+const THIN: f64 = 0.01;
 /// A step in which stability is lost though the load factor goes on becomes shorter by this share, until
 /// it changes the load factor by less than so much of it: a bifurcation is located as well as this.
 const BIFURCATION: [f64; 2] = [0.25, 5e-3];
@@ -36,7 +40,7 @@ pub(super) fn follow(path: &mut Path<'_>, options: &Options, observer: &mut dyn 
     let factors = &options.load_factors;
     let (first, target) = (factors[0] - path.at.load.t, factors[factors.len() - 1]);
     let step = options.first_step.unwrap_or(f64::INFINITY);
-    let mut walk = Walk::new(path, [first, step, options.min_step]);
+    let mut walk = Walk::new(path, [first, step, options.min_step])?;
     if factors.len() > 1 {
         walk = walk.in_even_steps();
     }
@@ -63,20 +67,31 @@ impl Walk {
     /// From the last point of the path, whose tangent is factorised, in the direction in which the load factor changes
     /// by `most`; along the tangent no step changes it by more, the first one changes it by `first` and the shortest by
     /// `shortest`. Where a path turns away from its first direction it goes much farther for the same load.
-    pub fn new(path: &mut Path<'_>, [most, first, shortest]: [f64; 3]) -> Self {
+    ///
+    /// # Errors
+    ///
+    /// The loads do not change with the load factor.
+    pub fn new(path: &mut Path<'_>, [most, first, shortest]: [f64; 3]) -> Result<Self, Failure> {
         let metric = Metric::new(path);
-        let rate = path.rate(&path.at.q.clone(), path.at.load.t);
+        let t = path.at.load.t;
+        let rate = path.rate(&path.at.q.clone(), t);
         let size = metric.length(&rate);
+        if size == 0.0 {
+            return Err(Failure::ConstantLoad { t });
+        }
+        let bodies = path.system.model().bodies().iter();
+        let thin = bodies.map(|body| body.plate().thickness / path.newton.scale()[3 * body.vector(0, 0)]);
+        let thin = THIN * thin.fold(f64::INFINITY, f64::min);
         let tangent = Tangent::new(rate, most.signum() / size);
         let most = most.abs();
-        Self {
+        Ok(Self {
             metric,
             tangent,
-            length: size * first.min(most),
-            shortest: size * shortest,
+            length: (size * first.min(most)).min(FIRST),
+            shortest: (size * shortest).min(thin),
             longest: f64::INFINITY,
             most,
-        }
+        })
     }
 
     /// The same with steps no longer than the first tangent is for the largest change of the load factor.
@@ -110,7 +125,10 @@ impl Walk {
                     share = 1.0;
                     // A load beyond all numbers gives lengths that never become short.
                     if !(self.shortest..f64::INFINITY).contains(&self.length) {
-                        return Err(failure);
+                        let (q, t) = (path.at.q.clone(), path.at.load.t);
+                        let next = t + self.shortest * self.tangent.t;
+                        let constant = self.metric.length(&path.rate(&q, next)) == 0.0;
+                        return Err(if constant { Failure::ConstantLoad { t } } else { failure });
                     }
                 }
             }
@@ -137,6 +155,7 @@ impl Walk {
             let forward = metric.product(&rate, &straight).signum() / metric.length(&rate);
             Way { from: &path.at, q: &q, t: report.t, start: tangent, end: Tangent::new(rate, forward), chord }
         };
+        path.check_collapse(&path.at.q, &q, report.t)?;
         let turn = metric.length(&difference(&q, &predicted)) / length;
         let work = way.work(path);
         let gained = report.energy - path.at.energy;
@@ -144,11 +163,13 @@ impl Walk {
         if turn > TURN[0] || mismatch.abs() > MISMATCH {
             return Err(Failure::Disconnected { progress: turn, mismatch });
         }
-        match way.limit() {
+        let limit = way.limit();
+        match limit {
             Some(share) if (LIMIT..1.0 - LIMIT).contains(&share) => return Ok(Step::Shortened(share)),
-            None if length > self.shortest
+            // A limit point at an end explains one negative pivot.
+            _ if length > self.shortest
                 && stable
-                && report.negative_pivots > 0
+                && report.negative_pivots > usize::from(limit.is_some())
                 && (way.t - way.from.load.t).abs() > BIFURCATION[1] * way.t.abs() =>
             {
                 return Ok(Step::Lost);

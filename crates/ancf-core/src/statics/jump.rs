@@ -15,8 +15,8 @@ use super::path::{Load, Path, Point, difference, product};
 
 /// Steps by arc length in which stability is lost or the load is reached.
 const MOST_STEPS: usize = 50;
-/// How far beyond the load at which stability is lost the structure moves, relative to the first step: there the equilibrium
-/// that it leaves is no longer, and nor are those that are as close to their limit.
+/// How far beyond the load at which stability is lost the structure moves, relative to that load, but no more than to the
+/// first step: there the equilibrium that it leaves is no longer, and nor are those that are as close to their limit.
 const BEYOND: f64 = 0.01;
 /// Iterations of a motion.
 const MOST_MOTION: usize = 5000;
@@ -50,7 +50,7 @@ fn lead_on(
     let start = path.at.load.t;
     let direction = (target - start).signum();
     let onwards = |from: f64, change: f64| from + direction * change.min((target - from).abs());
-    let mut walk = Walk::new(path, [target - start, first, options.min_step]);
+    let mut walk = Walk::new(path, [target - start, first, options.min_step])?;
     let mut farthest = start;
     for _ in 0..MOST_STEPS {
         match walk.step(path, target, observer) {
@@ -75,7 +75,8 @@ fn lead_on(
         if path.at.negative_pivots > 0 || back > 0.0 {
             let q = disturbed(path, &difference(&path.at.q, &stable.0.q));
             let shape = difference(&path.at.q, path.system.model().reference());
-            let (t, stiffness) = (onwards(farthest, BEYOND * first), 2.0 * path.at.energy);
+            let beyond = (BEYOND * first.min(farthest.abs())).max(options.min_step.min(BEYOND * first));
+            let (t, stiffness) = (onwards(farthest, beyond), 2.0 * path.at.energy);
             return jump(path, stable, Start { t, q, shape: &shape, stiffness }, observer);
         }
         observer.reached(path.at.load.t);

@@ -90,7 +90,10 @@ pub(super) fn settle(
             Ok(report) => Some(report),
         };
         let (moved, step) = (newton.distance(&q, &next), difference(&next, &q));
-        let valid = report.filter(|report| report.negative_pivots == 0 && moved <= LONGEST);
+        let mut valid = report.filter(|report| report.negative_pivots == 0 && moved <= LONGEST);
+        if let (Some(_), Err(failure)) = (valid, path.check_collapse(&q, &next, t)) {
+            (valid, cause) = (None, Some(failure));
+        }
         let lower = valid.and_then(|report| {
             // The energy of the report is not exact enough for small steps.
             let there = damped.internal_force(&next, &mut force).total();
@@ -129,8 +132,8 @@ pub(super) fn settle(
     path.factorizations += damped.factorizations();
     path.iterations += newton.iterations();
     end.ok_or_else(|| match cause {
-        // No step has succeeded, or the motion rests where there is no stable equilibrium.
-        Some(failure) if stuck || last == f64::INFINITY => failure,
+        // No step has succeeded, the motion rests where there is no stable equilibrium, or elements collapse.
+        Some(failure) if stuck || last == f64::INFINITY || matches!(failure, Failure::Collapsed { .. }) => failure,
         _ => Failure::NotSettled { iterations: newton.iterations(), moved: last },
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::assembly::{Bodies, System};
 use crate::element::Want;
-use crate::nonlinear::{Failure, Newton, Options as NewtonOptions};
+use crate::nonlinear::{Failure, Middles, Newton, Options as NewtonOptions};
 use crate::observe::{Observer, State};
 use crate::report::{Counts, Rejections};
 
@@ -112,6 +112,15 @@ impl<'a> Path<'a> {
         system.assemble(&at.q, at.load.t, want, &mut vec![0.0; at.q.len()]);
         system.factorize().map_err(|e| Failure::from_linear(e, 0, |row| system.describe(row)))?;
         Ok(())
+    }
+
+    /// Refuses a step to `to` on which an element is turned inside out or squeezed to nothing: no material has equilibria there.
+    pub fn check_collapse(&self, from: &[f64], to: &[f64], t: f64) -> Result<(), Failure> {
+        let model = self.system.model();
+        let mut middles = Middles::new(model);
+        middles.begin(model, from);
+        let place = middles.collapsed(model, to).or_else(|| middles.squeezed(model, to));
+        place.map_or(Ok(()), |place| Err(Failure::Collapsed { place, end: format!("load factor {t:.6}") }))
     }
 
     /// Change of the force at coordinates `q` from the load of the last point to another one.

@@ -8,12 +8,16 @@ use crate::model::{Body, Model};
 /// Area, relative to the larger one at both ends of a step, that counts as none.
 const NO_AREA: f64 = 1e-3;
 
+/// Area of an element in equilibrium, relative to that at rest, below which nothing is left of it: St. Venant-Kirchhoff's law
+/// lets a strip lose all its width at a stretch of sqrt(1 + 1/nu), and a column all its length at a finite force.
+const SQUEEZED: f64 = 0.1;
+
 /// The middle of an element, relative to its sides.
 const MIDDLE: [f64; 2] = [0.5, 0.5];
 
 /// The middles of all elements of a model, where collapse is looked for: gradients at nodes fold and unfold in soft plates
 /// whose elements keep their areas, as at a pinned corner.
-pub(super) struct Middles {
+pub(crate) struct Middles {
     /// Of each body, for each nodal vector of an element: `N_x` and `N_y` at its middle.
     tables: Vec<Vec<[f64; 2]>>,
     /// `r_x` and `r_y` of all elements in the last state, and in the one that was looked at.
@@ -49,17 +53,16 @@ impl Middles {
     pub fn collapsed(&mut self, model: &Model, q: &[f64]) -> Option<String> {
         self.look_at(model, q);
         let turned = |(last, next)| is_turned_inside_out(last, next);
-        let mut element = self.last.iter().zip(&self.next).position(turned)?;
-        for body in model.bodies() {
-            let grid = body.grid();
-            if element < grid.elements() {
-                let [first, _, last, _] = grid.cell(element).map(|node| grid.parameters(node));
-                let middle = Place::Point([0, 1].map(|i| 0.5 * (first[i] + last[i])));
-                return Some(format!("{middle} of body \"{}\"", body.name()));
-            }
-            element -= grid.elements();
-        }
-        unreachable!("elements are those of the bodies")
+        self.last.iter().zip(&self.next).position(turned).map(|element| place(model, element))
+    }
+
+    /// The first element that has hardly any area left in equilibrium, in words.
+    pub fn squeezed(&mut self, model: &Model, q: &[f64]) -> Option<String> {
+        self.begin(model, model.reference());
+        self.look_at(model, q);
+        let area = |[x, y]: &[Vector3<f64>; 2]| x.cross(y).norm();
+        let mut areas = self.last.iter().zip(&self.next);
+        areas.position(|(rest, now)| area(now) < SQUEEZED * area(rest)).map(|element| place(model, element))
     }
 
     fn look_at(&mut self, model: &Model, q: &[f64]) {
@@ -81,6 +84,20 @@ impl Middles {
             }));
         }
     }
+}
+
+/// The middle of an element, counted over all bodies, in words.
+fn place(model: &Model, mut element: usize) -> String {
+    for body in model.bodies() {
+        let grid = body.grid();
+        if element < grid.elements() {
+            let [first, _, last, _] = grid.cell(element).map(|node| grid.parameters(node));
+            let middle = Place::Point([0, 1].map(|i| 0.5 * (first[i] + last[i])));
+            return format!("{middle} of body \"{}\"", body.name());
+        }
+        element -= grid.elements();
+    }
+    unreachable!("elements are those of the bodies")
 }
 
 /// Whether the area vector passes by zero closely, and points backwards then.
