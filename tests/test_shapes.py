@@ -64,6 +64,8 @@ def test_given_derivatives_are_taken() -> None:
         ({"position": lambda x, y: (x * x, y, 0)}, "at [0, 0]: must give finite numbers, r_x and r_y neither"),
         ({"position": lambda x, y: (x, math.cos(y), 0)}, "position: fails: .*called with arrays"),
         ({"derivatives": lambda x, y: (x, y)}, "derivatives: must return r_x, r_y and r_xy"),
+        ({"derivatives": lambda x, y: ((1, 0, 0), (0, 2, 0), (0, 0, 0))}, "derivatives: r_y at .* is [0.0, 2.0, 0.0]"),
+        ({"position": lambda x, y: (x + 0j, y, 0 * x)}, "position: must return three components"),
         ({"domain": ((0, 1), (1, 1))}, "domain = [[0, 1], [1, 1]]: must be two pairs of increasing numbers"),
         ({"position": 1}, "position"),
     ],

@@ -81,8 +81,9 @@ def test_kinds(scenes: Path, tmp_path: Path) -> None:
 
 
 def test_statics_have_no_map(scenes: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["stability", str(scenes / "cantilever.toml"), "-o", str(tmp_path)]) == 2
-    assert "must be dynamic" in capsys.readouterr().err
+    assert main(["stability", str(scenes / "cantilever.toml"), "-o", str(tmp_path / "deep" / "map")]) == 2
+    assert 'run.kind = "static": must be dynamic' in capsys.readouterr().err
+    assert not (tmp_path / "deep").exists()
     assert main(["stability", "-o", str(tmp_path)]) == 2
     assert "either a scene or --suite" in capsys.readouterr().err
 

@@ -19,6 +19,9 @@ FloatArray = NDArray[np.float64]
 _STENCIL = 7
 _STEP = float(np.finfo(np.float64).eps) ** (1 / _STENCIL)
 """Step of the differences relative to the range: their error of sixth order is then that of rounding."""
+_WRONG = 0.05
+"""Distance of derivatives that are given from differences, relative to the largest, that is a mistake: differences of positions
+that are interpolated in a table may be off, too."""
 
 
 class Surface(Plate):
@@ -40,7 +43,8 @@ class Surface(Plate):
     Raises
     ------
     InputError
-        If a value is impossible, a function fails, or at a node r_x and r_y are zero or parallel.
+        If a value is impossible, a function fails, at a node r_x and r_y are zero or parallel, or derivatives are far
+        from those of the position.
 
     Examples
     --------
@@ -84,6 +88,7 @@ class Surface(Plate):
             if not isinstance(given, Sequence | np.ndarray) or len(given) != 3:
                 raise InputError(Mistake(("derivatives",), "must return r_x, r_y and r_xy"))
             vectors = [r, *(_components(vector, x, "derivatives") for vector in given)]
+            self._compare(x, y, vectors[1:])
         try:
             return _core.Shape.nodes(self.domain, self.divisions, np.concatenate(vectors, axis=1))
         except _core.InputError as error:
@@ -99,6 +104,22 @@ class Surface(Plate):
                 f"fails: {error}; it is called with arrays x, y, which functions of NumPy take and those of math do not"
             )
             raise InputError(Mistake((name,), told)) from error
+
+    def _compare(self, x: FloatArray, y: FloatArray, given: list[FloatArray]) -> None:
+        """Refuse derivatives that are far from differences of the positions."""
+        known = self._differences(x, y)
+        ranges = [high - low for low, high in self.domain]
+        # In units in which all of them are lengths.
+        units = [ranges[0], ranges[1], ranges[0] * ranges[1]]
+        size = max(float(np.abs(unit * vector).max()) for unit, vector in zip(units, known, strict=True))
+        for name, unit, vector, found in zip(("r_x", "r_y", "r_xy"), units, given, known, strict=True):
+            off = np.abs(unit * (vector - found)).max(axis=1)
+            if off.max() > _WRONG * size:
+                node = int(off.argmax())
+                told = f"{name} at [{x[node]:.6g}, {y[node]:.6g}] is {vector[node].round(6).tolist()}"
+                raise InputError(
+                    Mistake(("derivatives",), f"{told}, where position has {found[node].round(6).tolist()}")
+                )
 
     def _differences(self, x: FloatArray, y: FloatArray) -> list[FloatArray]:
         """Return r_x, r_y, r_xy, each (points, 3), from positions at 7 x 7 points about each point."""
@@ -126,6 +147,8 @@ def _components(given: Any, like: FloatArray, name: str) -> FloatArray:
     """Return three components, each a number or an array as `like`, as an array (..., 3)."""
     try:
         x, y, z = given
+        if any(map(np.iscomplexobj, (x, y, z))):
+            raise TypeError
         parts = [np.broadcast_to(np.asarray(part, dtype=np.float64), like.shape) for part in (x, y, z)]
     except (TypeError, ValueError):
         problem = "must return three components, each a number or an array of the shape of x and y"

@@ -65,6 +65,18 @@ def remove_folders(folders: list[Path]) -> None:
         folder.rmdir()
 
 
+@contextmanager
+def folder_for(folder: Path) -> Iterator[None]:
+    """Make a folder as `make_folder` does; wrong input that shows before anything is written leaves none behind."""
+    made = make_folder(folder)
+    try:
+        yield
+    except InputError:
+        if not any(folder.iterdir()):
+            remove_folders(made)
+        raise
+
+
 def remove_extras(folder: Path) -> None:
     """Remove the pictures and fields of an earlier run: the results that they show have been replaced."""
     fields = (folder / FIELDS).with_suffix("")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from ancf.commands import OK, positive, seconds
 from ancf.commands.sweeping import add_sweep_arguments, executor
-from ancf.output import make_folder
+from ancf.output import folder_for
 from ancf.scene import load_scene
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ def call(options: argparse.Namespace) -> int:
 
     scene = load_scene(options.scene)
     axes = read_axes(options.axes, scene) if options.axes else default_axes(scene)
-    make_folder(options.output)
-    with executor(options) as runner:
+    with folder_for(options.output), executor(options) as runner:
         chart = measure(
             scene,
             axes,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from ancf.commands import FAILED, OK, complain, seconds
 from ancf.commands.sweeping import add_sweep_arguments, executor
 from ancf.errors import InputError, Mistake
-from ancf.output import make_folder
+from ancf.output import folder_for
 from ancf.scene import load_scene
 
 if TYPE_CHECKING:
@@ -64,8 +64,7 @@ def _map(options: argparse.Namespace) -> int:
 
     scene = load_scene(options.scene)
     parameter, given, values = (options.against or "E").partition("=")
-    make_folder(options.output)
-    with executor(options) as runner:
+    with folder_for(options.output), executor(options) as runner:
         found = scan(
             scene,
             options.output / _LOG,
@@ -87,8 +86,7 @@ def _map(options: argparse.Namespace) -> int:
 def _suite(options: argparse.Namespace) -> int:
     from ancf.stability import run_suite  # noqa: PLC0415  As above.
 
-    make_folder(options.output)
-    with executor(options) as runner:
+    with folder_for(options.output), executor(options) as runner:
         verdicts = run_suite(
             options.output / _LOG,
             quick=options.quick,

@@ -102,7 +102,7 @@ def scan(
         If the scene does not move or has no probes, the parameter has no values, or a value or method is impossible.
     """
     if not isinstance(scene.run, Dynamic):
-        raise InputError(Mistake(("run", "kind"), "must be dynamic: the map is over time steps", show("static")))
+        raise InputError(Mistake(("run", "kind"), "must be dynamic: the map is over time steps", show(scene.run.kind)))
     if not scene.model.probes:
         raise InputError(Mistake(("probe",), "is missing: the map shows the errors of probes"))
     until = scene.run.until
