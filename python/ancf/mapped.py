@@ -20,8 +20,8 @@ _STENCIL = 7
 _STEP = float(np.finfo(np.float64).eps) ** (1 / _STENCIL)
 """Step of the differences relative to the range: their error of sixth order is then that of rounding."""
 _WRONG = 0.05
-"""Distance of derivatives that are given from differences, relative to the largest, that is a mistake: differences of positions
-that are interpolated in a table may be off, too."""
+"""Distance of derivatives that are given from differences, relative to the largest, that is a mistake: differences of
+positions that are interpolated in a table may be off, too."""
 
 
 class Surface(Plate):
@@ -116,10 +116,9 @@ class Surface(Plate):
             off = np.abs(unit * (vector - found)).max(axis=1)
             if off.max() > _WRONG * size:
                 node = int(off.argmax())
-                told = f"{name} at [{x[node]:.6g}, {y[node]:.6g}] is {vector[node].round(6).tolist()}"
-                raise InputError(
-                    Mistake(("derivatives",), f"{told}, where position has {found[node].round(6).tolist()}")
-                )
+                told, due = (value[node].round(6).tolist() for value in (vector, found))
+                problem = f"{name} at [{x[node]:.6g}, {y[node]:.6g}] is {told}, where position has {due}"
+                raise InputError(Mistake(("derivatives",), problem))
 
     def _differences(self, x: FloatArray, y: FloatArray) -> list[FloatArray]:
         """Return r_x, r_y, r_xy, each (points, 3), from positions at 7 x 7 points about each point."""
