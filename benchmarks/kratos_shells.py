@@ -1,7 +1,7 @@
 """Print two shells of docs/shells.md beside the thin corotational shell of Kratos, an independent code.
 
 Run it from any folder with ``python benchmarks/kratos_shells.py``, ``--write`` puts the tables into the page; it takes
-ten minutes. Kratos comes from the package index: ``pip install KratosMultiphysics==10.4.4
+a quarter of an hour. Kratos comes from the package index: ``pip install KratosMultiphysics==10.4.4
 KratosStructuralMechanicsApplication==10.4.4 KratosLinearSolversApplication==10.4.4``. It has a scene's geometry,
 material, load and supports, in load steps that are set by hand.
 """

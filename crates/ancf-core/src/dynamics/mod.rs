@@ -5,8 +5,8 @@
 //! `dormand_prince`, `energy_momentum`, `verlet` and, for bodies that do not deform, `rigid`. What they need of a model
 //! is in `equations`: implicit ones state their step as a `stage`, which is the one nonlinear problem of
 //! [`nonlinear`](crate::nonlinear), explicit ones ask for accelerations,
-//! which `inertia` finds. `control` chooses the length of steps, `stability` limits it, `collapse` refuses
-//! those that turn elements inside out, `simulation` strings steps together, and `checkpoint` is what is needed to go on later.
+//! which `inertia` finds. `control` chooses the length of steps, `stability` limits it, `simulation` strings steps together
+//! and refuses those that turn elements inside out, and `checkpoint` is what is needed to go on later.
 
 mod checkpoint;
 mod control;
