@@ -22,6 +22,7 @@ from pathlib import Path
 
 import numpy as np
 from plan_aside import aside
+from plan_fresh import fresh
 from plan_scenes import Case, developed, made_later
 from plan_unseen import first_round, kept, last_round
 
@@ -143,7 +144,7 @@ def judge(name: str) -> list[Line]:
     """Plan a scene to all tolerances, and compare with references and a chart."""
     case = next(
         case
-        for case in (*developed(), *made_later(), *first_round(), *kept(), *last_round(), *aside())
+        for case in (*developed(), *made_later(), *first_round(), *kept(), *last_round(), *aside(), *fresh())
         if case.scene.title == name
     )
     known = truth_of(case)
@@ -266,7 +267,7 @@ def main() -> None:
     options = parser.parse_args()
     sets = {"developed on": developed(), "made later": made_later(), "first unseen": first_round()}
     if options.holdout:
-        sets = {"kept": kept(), "of the last round": last_round(), "put aside": aside()}
+        sets = {"kept": kept(), "of the last round": last_round(), "put aside": aside(), "put aside last": fresh()}
     named = {name: [case.scene.title for case in cases] for name, cases in sets.items()}
     columns = "scene, tolerance, chosen, true error, promised, reference to, s, cheapest s, ratio, without accidents"
     columns += ", plan s, reference s"

@@ -244,3 +244,18 @@ def test_modes_are_not_swept(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     scene.write_text(SCENE + '[[probe]]\nname = "A"\nat = [1, 0.1]\n')
     assert main(["chart", str(scene), "-o", str(tmp_path / "out")]) == 2
     assert 'run.kind = "modes": must be static or dynamic' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("length", "known"), [(10.0, True), (100.0, False)])
+def test_modes_that_rounding_takes_are_an_error(length: float, known: bool) -> None:
+    """Of a strip 10 mm wide and 1 mm thick: Euler and Bernoulli's first frequency, or none."""
+    strip = ancf.Rectangle(
+        size=(length, 0.01), divisions=(16, 1), thickness=1e-3, material=ancf.Material(E=2e11, nu=0.0, density=7800.0)
+    )
+    model = ancf.Model(bodies={"strip": strip}, supports=[ancf.Support(at="edge:x0", clamp=True)])
+    if not known:
+        with pytest.raises(ancf.SolveError, match="rounding changes the squared frequency of mode 1"):
+            ancf.modes(model, count=2)
+        return
+    exact = 1.8751**2 / (2 * np.pi * length**2) * np.sqrt(2e11 * 1e-6 / 12 / 7800)
+    np.testing.assert_allclose(ancf.modes(model, count=2).frequency[0], exact, rtol=1e-3)
