@@ -46,7 +46,7 @@ class Result:
     reached : float
         The last time, s, or load factor.
     jumps : ndarray, shape (jumps,)
-        Load factors at which a structure in statics has jumped to another equilibrium, up to 1 % above those at
+        Load factors at which a structure in statics has jumped to another equilibrium, up to 1.5 % above those at
         which it lost its own.
     t : ndarray, shape (states,)
         Times, s, or load factors; the first is 0, the state at the start.
