@@ -259,3 +259,22 @@ def test_modes_that_rounding_takes_are_an_error(length: float, known: bool) -> N
         return
     exact = 1.8751**2 / (2 * np.pi * length**2) * np.sqrt(2e11 * 1e-6 / 12 / 7800)
     np.testing.assert_allclose(ancf.modes(model, count=2).frequency[0], exact, rtol=1e-3)
+
+
+def test_projected_has_false_modes_in_the_plane() -> None:
+    """A free square of 2 x 2 elements: docs/modes.md says so; `full` begins near sqrt(E / rho) / (2 a) and above."""
+    lowest = {}
+    for membrane in ("projected", "full"):
+        square = ancf.Rectangle(
+            size=(1.0, 1.0),
+            divisions=(2, 2),
+            thickness=1e-3,
+            membrane=membrane,
+            material=ancf.Material(E=2e11, nu=0.3, density=7800.0),
+        )
+        found = ancf.modes(ancf.Model(bodies={"square": square}), count=60)
+        squares = found.shapes.reshape(len(found.shapes), -1, 3) ** 2
+        plane = squares[..., :2].sum(axis=(1, 2)) > 0.5 * squares.sum(axis=(1, 2))
+        lowest[membrane] = found.frequency[plane & (found.frequency > 1e-3)][0]
+    assert 0.6 < lowest["full"] / (0.5 * np.sqrt(2e11 / 7800.0)) < 1.2
+    assert lowest["projected"] == pytest.approx(0.011 * lowest["full"], rel=0.1)
